@@ -31,18 +31,20 @@ class Source {
   virtual bool next_sample(ForceSample& sample) = 0;
   /// Whether somebody looks. The clock is held while nobody does, and the source's thread sleeps.
   virtual void set_watched(bool) {}
-  /// Whether states are to hold velocities.
-  virtual void want_pressure(bool) {}
+  /// Whether states are to hold what the stress follows from, and the contact pressure.
+  virtual void want_fields(bool /*stress*/, bool /*contact*/) {}
 
   // Known from the start, and the same after every reset.
   virtual const std::vector<ToolInfo>& tools() const = 0;
   virtual const std::vector<ParameterInfo>& parameters() const = 0;
   /// What instruments look like, a JSON list as web/src/report_data.ts has it.
   virtual const std::string& forms() const = 0;
+  /// Of the container, as web/src/report_data.ts has it, in JSON; empty: there is none.
+  virtual std::string vessel() const { return {}; }
   virtual bool can_grab() const = 0;
   /// Empty where a hand's blade cuts the body.
   virtual const std::string& why_no_cut() const = 0;
-  /// Whether states have what the pressure in the tissue follows from.
+  /// Whether states have what stress and contact pressure follow from.
   virtual bool has_stress() const = 0;
   virtual std::size_t vertices() const = 0;
   virtual std::size_t tets() const = 0;

@@ -20,6 +20,7 @@ from ._optional import need
 
 STYLE: dict[str, Any] = {
     "figure.figsize": (3.5, 2.6),  # a column of a journal [in]
+    "figure.dpi": 200,
     "figure.constrained_layout.use": True,
     "font.size": 8,
     "font.sans-serif": ["Source Sans 3", "Helvetica Neue", "Arial", "DejaVu Sans"],

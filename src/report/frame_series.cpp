@@ -8,10 +8,10 @@
 #include <new>
 #include <span>
 
-#include "element/tet_fields.h"
 #include "glisson/io.h"
 #include "material/strain.h"
 #include "mesh/inspect/nearest_point.h"
+#include "report/field_values.h"
 #include "report/output_file.h"
 #include "report/tool_surface.h"
 
@@ -28,15 +28,13 @@ Field vector_field(std::string name, std::span<const Vec3d> vectors) {
 /// @param stress  xx, yy, zz, xy, yz, zx of each tet
 std::vector<Field> stress_fields(const std::vector<double>& stress) {
   Field tensor{.name = "stress_Pa", .components = 9, .values = {}};
-  Field mises{.name = "von_mises_Pa", .components = 1, .values = {}};
-  Field pressure{.name = "pressure_Pa", .components = 1, .values = {}};
   for (std::size_t i = 0; i + 6 <= stress.size(); i += 6) {
     const std::span<const double, 6> s(stress.data() + i, 6);
     tensor.values.insert(tensor.values.end(), {s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2]});
-    mises.values.push_back(von_mises(s));
-    pressure.values.push_back(-(s[0] + s[1] + s[2]) / 3.0);
   }
-  return {std::move(tensor), std::move(pressure), std::move(mises)};
+  return {std::move(tensor),
+          {.name = "pressure_Pa", .components = 1, .values = pressure_of(stress)},
+          {.name = "von_mises_Pa", .components = 1, .values = von_mises_of(stress)}};
 }
 
 /// Green's strain ½ (FᵀF − I) = sym H + ½ HᵀH of each tet, with H = Du Dm⁻¹ of its edges.

@@ -1,6 +1,10 @@
 // instrument_json.cpp — see instrument_json.h.
 #include "report/instrument_json.h"
 
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
 namespace glisson {
 namespace {
 
@@ -44,6 +48,32 @@ json instrument_place_json(const Instrument& instrument) {
     for (const double x : row) axes.push_back(static_cast<float>(x));
   }
   return {{"points", std::move(line)}, {"axes", std::move(axes)}};
+}
+
+json vessel_json(const ContainerOptions& container, std::span<const Vec3d> vertices) {
+  constexpr double kAbove = 1.15;  // the body, where the wall has no end
+  double top = 0.0;
+  const Mat3d& axes = container.pose.axes;
+  const Vec3d up{axes(0, 2), axes(1, 2), axes(2, 2)};
+  for (const Vec3d& x : vertices) top = std::max(top, dot(x - container.pose.position, up));
+  json form = std::visit(
+      [&](const auto& vessel) -> json {
+        json size{{"kind", vessel.kName}, {"height_m", std::isfinite(vessel.height) ? vessel.height : kAbove * top}};
+        if constexpr (requires { vessel.radius; }) {
+          size["radius_m"] = vessel.radius;
+        } else {
+          size["width_m"] = vessel.width;
+          size["length_m"] = vessel.length;
+        }
+        return size;
+      },
+      container.vessel);
+  form["origin"] = numbers(container.pose.position);
+  form["axes"] = json::array();
+  for (const auto& row : container.pose.axes.m) {
+    for (const double x : row) form["axes"].push_back(x);
+  }
+  return form;
 }
 
 json instrument_forms_json(const InstrumentList& instruments) { return list_of(instruments, instrument_form_json); }

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <span>
 
+#include "glisson/instruments/container.h"
 #include "glisson/instruments/instrument.h"
 
 namespace glisson {
@@ -18,5 +20,8 @@ nlohmann::json instrument_places_json(const InstrumentList& instruments);
 
 /// InstrumentPlace of web/src/report_data.ts: the centre line of a needle as it is bent, the pose of a shape.
 nlohmann::json instrument_place_json(const Instrument& instrument);
+
+/// VesselForm of web/src/report_data.ts; a wall without end is drawn somewhat higher than the body at rest.
+nlohmann::json vessel_json(const ContainerOptions& container, std::span<const Vec3d> vertices);
 
 }  // namespace glisson

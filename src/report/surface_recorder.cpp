@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "report/base64.h"
+#include "report/field_values.h"
 #include "report/fractions.h"
 #include "report/instrument_json.h"
 
@@ -13,7 +14,8 @@ namespace glisson {
 namespace {
 
 constexpr std::uint32_t kInside = std::numeric_limits<std::uint32_t>::max();
-constexpr double kBase64BytesPerVertex = 7.0 * 4.0 / 3.0;
+// Of a vertex in a frame: displacement, s, pressure, von Mises' stress, and where something touches the contact pressure.
+constexpr double kBase64BytesPerVertex = 10.0 * 4.0 / 3.0, kBase64BytesPerTet = 16.0 * 4.0 / 3.0;
 
 /// 2 where a tool drives the vertex, 1 where a support holds it, 0 where it is free; per mesh vertex.
 std::vector<std::uint8_t> constraint_marks(const Variant& variant, const TetMesh& mesh) {
@@ -32,10 +34,16 @@ std::vector<std::uint8_t> constraint_marks(const Variant& variant, const TetMesh
 
 SurfaceRecorder::SurfaceRecorder(const Variant& variant, const Simulation& simulation, std::size_t max_bytes)
     : variant_(variant), skin_(simulation.mesh()) {
+  const TetMesh& mesh = simulation.mesh();
+  const double a_vertex = kBase64BytesPerVertex * variant.output.frames;
+  whole_ = a_vertex * static_cast<double>(mesh.vertices.size()) +
+               kBase64BytesPerTet * static_cast<double>(mesh.tets.size()) <=
+           static_cast<double>(max_bytes);
   find_surface(simulation);
   head_["triangles"] = base64_of(std::span<const std::uint32_t>(triangles_));
+  if (whole_) head_["tets"] = base64_of(std::span<const std::uint32_t>(tets_));
   head_["instruments"] = nlohmann::json::array();
-  const double wanted = kBase64BytesPerVertex * static_cast<double>(vertices_.size()) * variant.output.frames;
+  const double wanted = a_vertex * static_cast<double>(vertices_.size());
   stride_ = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(wanted / static_cast<double>(max_bytes))));
 }
 
@@ -70,11 +78,26 @@ void SurfaceRecorder::find_surface(const Simulation& simulation) {
   }
   kinds_.clear();
   for (const SurfaceKind kind : surface.kinds) kinds_.push_back(static_cast<std::uint8_t>(kind));
-  if (first) return find_regions(surface, mesh);
+  if (first) {
+    find_regions(surface, mesh);
+    return find_inside(simulation);
+  }
   for (Region& region : regions_) {
     std::vector<std::uint32_t> triangles = region_triangles(surface, region.name, mesh);
     regions_changed_ = regions_changed_ || triangles != region.triangles;
     region.triangles = std::move(triangles);
+  }
+  find_inside(simulation);
+}
+
+/// All tets that are there, with the vertices that no surface has.
+void SurfaceRecorder::find_inside(const Simulation& simulation) {
+  if (!whole_) return;
+  const TetMesh& mesh = simulation.mesh();
+  tets_.clear();
+  for (std::uint32_t t = 0; t < mesh.tets.size(); ++t) {
+    if (simulation.is_removed(t)) continue;
+    for (const std::uint32_t v : mesh.tets[t]) tets_.push_back(number_of(v, mesh));
   }
 }
 
@@ -114,20 +137,25 @@ void SurfaceRecorder::find_new_surface(const Simulation& simulation) {
   find_surface(simulation);
 }
 
-std::vector<double> SurfaceRecorder::surface_intensity(const Simulation& simulation, const TetFields& fields) const {
-  const TetMesh& mesh = simulation.mesh();
-  std::vector<double> sum(mesh.vertices.size(), 0.0), count(mesh.vertices.size(), 0.0);
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-    if (simulation.is_removed(static_cast<std::uint32_t>(t))) continue;
-    for (const std::uint32_t v : mesh.tets[t]) {
-      sum[v] += fields.s[t];
-      count[v] += 1.0;
-    }
-  }
-  std::vector<double> mean;
-  mean.reserve(vertices_.size());
-  for (const std::uint32_t v : vertices_) mean.push_back(sum[v] / std::max(1.0, count[v]));
-  return mean;
+std::vector<double> SurfaceRecorder::at_vertices(const Simulation& simulation, std::span<const double> of_tets) const {
+  const std::vector<double> mean =
+      vertex_means(simulation.mesh(), of_tets, [&](std::uint32_t tet) { return simulation.is_removed(tet); });
+  std::vector<double> own;
+  own.reserve(vertices_.size());
+  for (const std::uint32_t v : vertices_) own.push_back(mean[v]);
+  return own;
+}
+
+/// Fields besides s and the displacement, by their names on the page.
+nlohmann::json SurfaceRecorder::other_fields(const Simulation& simulation, const TetFields& fields) const {
+  nlohmann::json list{{"pressure", field_json(at_vertices(simulation, pressure_of(fields.stress)))},
+                      {"von_mises", field_json(at_vertices(simulation, von_mises_of(fields.stress)))}};
+  const ContactFields contact = simulation.contact_fields();
+  if (contact.pressure.empty()) return list;
+  std::vector<double> own;
+  for (const std::uint32_t v : vertices_) own.push_back(contact.pressure[v]);
+  list["contact_pressure"] = field_json(own);
+  return list;
 }
 
 nlohmann::json SurfaceRecorder::frame(const Simulation& simulation, const TetFields& fields) {
@@ -137,7 +165,7 @@ nlohmann::json SurfaceRecorder::frame(const Simulation& simulation, const TetFie
     const std::uint32_t v = vertices_[i];
     displacement.push_back(mesh.vertices[v] + simulation.displacement()[v] - rest_[i]);
   }
-  const std::vector<double> intensity = surface_intensity(simulation, fields);
+  const std::vector<double> intensity = at_vertices(simulation, fields.s);
   double reach = 0.0, strongest = 0.0;
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -158,8 +186,10 @@ nlohmann::json SurfaceRecorder::frame(const Simulation& simulation, const TetFie
                       {"displacement", base64_of(std::span<const std::int16_t>(moved))},
                       {"intensity_max", strongest},
                       {"intensity", base64_of(std::span<const std::uint8_t>(colour))},
+                      {"fields", other_fields(simulation, fields)},
                       {"instruments", instrument_places_json(instruments_)}};
   if (changed_) json["triangles"] = base64_of(std::span<const std::uint32_t>(triangles_));
+  if (changed_ && whole_) json["tets"] = base64_of(std::span<const std::uint32_t>(tets_));
   if (kinds_changed_) json["kinds"] = base64_of(std::span<const std::uint8_t>(kinds_));
   for (std::size_t i = 0; regions_changed_ && i < regions_.size(); ++i)
     json["regions"].push_back(base64_of(std::span<const std::uint32_t>(regions_[i].triangles)));
@@ -169,6 +199,10 @@ nlohmann::json SurfaceRecorder::frame(const Simulation& simulation, const TetFie
 void SurfaceRecorder::set_instruments(std::vector<std::shared_ptr<Instrument>> instruments) {
   instruments_ = std::move(instruments);
   head_["instruments"] = instrument_forms_json(instruments_);
+}
+
+void SurfaceRecorder::set_container(const Container& container, const TetMesh& mesh) {
+  head_["container"] = vessel_json(container.options(), mesh.vertices);
 }
 
 void SurfaceRecorder::add(const Simulation& simulation, const TetFields& fields) {

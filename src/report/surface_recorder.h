@@ -1,9 +1,10 @@
-// surface_recorder.h — the moving surface of a body, small enough to travel inside the report page.
+// surface_recorder.h — the moving body with its fields, small enough to travel inside the report page.
 //
-// Only vertices of the boundary and of the surfaces of inner regions are kept, renumbered; a body that is cut, or loses
-// tets, gets new ones of both with its next frame. A frame holds displacements as 16-bit
-// fractions of the largest one and intensities as 8-bit fractions of the largest one: 7 bytes a vertex, an error of 3e-5
-// of the largest displacement, well below a pixel.
+// Vertices of the boundary come first, then those of the surfaces of inner regions, then all others with the tets, which show a
+// field on a face that the reader cuts; where a page has no room for the whole body, its surfaces alone. A body that is cut, or
+// loses tets, gets new ones of all with its next frame. A frame holds displacements as 16-bit fractions of the largest one and
+// fields as 8-bit fractions of their range: some 10 bytes a vertex, an error of 3e-5 of the largest displacement, well below a
+// pixel.
 #pragma once
 
 #include <cstddef>
@@ -11,6 +12,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,6 +29,8 @@ class SurfaceRecorder {
 
   /// Instruments that frames show, too.
   void set_instruments(std::vector<std::shared_ptr<Instrument>> instruments);
+  /// The vessel about the body.
+  void set_container(const Container& container, const TetMesh& mesh);
   /// Capsules whose tears frames show.
   void set_capsules(std::vector<std::shared_ptr<Capsule>> capsules) { capsules_ = std::move(capsules); }
   /// Takes a frame. @param fields  of the same state
@@ -42,13 +46,16 @@ class SurfaceRecorder {
   std::vector<std::uint32_t> region_triangles(const BodySurface& surface, const std::string& name, const TetMesh& mesh);
   std::uint32_t number_of(std::uint32_t vertex, const TetMesh& mesh);
   void find_new_surface(const Simulation& simulation);
+  void find_inside(const Simulation& simulation);
   nlohmann::json frame(const Simulation& simulation, const TetFields& fields);
-  std::vector<double> surface_intensity(const Simulation& simulation, const TetFields& fields) const;
+  nlohmann::json other_fields(const Simulation& simulation, const TetFields& fields) const;
+  std::vector<double> at_vertices(const Simulation& simulation, std::span<const double> of_tets) const;
 
   Variant variant_;
   std::vector<std::uint32_t> vertices_;   // mesh vertex of each surface vertex
   std::vector<std::uint32_t> number_;     // surface vertex of each mesh vertex, or kInside
   std::vector<std::uint32_t> triangles_;  // in surface vertices
+  std::vector<std::uint32_t> tets_;       // likewise; empty where the page has no room for the whole body
   std::vector<Vec3d> rest_;               // of each surface vertex, when it was first at the surface [m]
   std::vector<std::uint8_t> fixed_;       // constraint mark of each surface vertex
   std::vector<std::uint8_t> kinds_;       // SurfaceKind of each triangle
@@ -59,6 +66,7 @@ class SurfaceRecorder {
   std::vector<Region> regions_;  // inner ones, as they were named at first
   SkinFaces skin_;
   std::size_t mesh_vertices_ = 0, removed_ = 0, torn_ = 0;
+  bool whole_ = false;          // with what is inside
   bool changed_ = false;        // the surface, since the last frame that was kept
   bool kinds_changed_ = false;  // what its triangles are
   bool regions_changed_ = false;

@@ -101,6 +101,7 @@ void VariantRecorder::on_built(const BuiltVariant& built) {
   instruments_ = built.instruments;
   surface_->set_instruments(built.instruments);
   surface_->set_capsules(built.capsules);
+  if (built.container) surface_->set_container(*built.container, built.simulation.mesh());
   if (frames_) frames_->set_instruments(built.instruments);
   table_.emplace(variant_, built);
   data_.resize(table_->columns().size());

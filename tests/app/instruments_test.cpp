@@ -114,6 +114,10 @@ motion = { kind = "press", depth_mm = 9, velocity_mm_s = 100 }
   EXPECT_EQ(surface["instruments"][0]["kind"], "needle");
   EXPECT_EQ(surface["instruments"][1]["kind"], "ball");
   EXPECT_EQ(surface["instruments"][1]["radius_m"], 0.005);
+  EXPECT_EQ(surface["container"]["kind"], "box");
+  EXPECT_EQ(surface["container"]["width_m"], 0.04);
+  EXPECT_NEAR(surface["container"]["height_m"].get<double>(), 1.15 * 0.04, 1e-9) << "above the body: it has no end";
+  EXPECT_TRUE(surface["frames"].back()["fields"].contains("contact_pressure"));
   for (const nlohmann::json& frame : surface["frames"]) {
     const double gone = std::min(0.009, 0.1 * frame["time_s"].get<double>());
     EXPECT_NEAR(frame["instruments"][0]["points"].back(), 0.041 - gone, 1e-7);

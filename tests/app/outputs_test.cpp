@@ -268,9 +268,19 @@ TEST_F(Outputs, ReportHoldsTheRun) {
   EXPECT_EQ(v["forces"]["columns"][5], "force_N");
   ASSERT_EQ(v["forces"]["data"][5].size(), f["force_N"].size());
   EXPECT_NEAR(v["forces"]["data"][5].back().get<double>(), f["force_N"].back(), 1e-6 * f["force_N"].back());
-  EXPECT_EQ(v["surface"]["vertices"], 26) << "all but the middle one of 3 × 3 × 3";
-  EXPECT_EQ(v["surface"]["frames"].size(), 3u);
-  EXPECT_EQ(v["surface"]["rest"].get<std::string>().size(), 26u * 3 * 4 / 3 * 4) << "26 × 3 floats in base64";
+  const nlohmann::json& body = v["surface"];
+  EXPECT_EQ(body["vertices"], 27) << "all of 3 × 3 × 3, the middle one last";
+  EXPECT_EQ(body["frames"].size(), 3u);
+  EXPECT_EQ(body["rest"].get<std::string>().size(), 27u * 3 * 4 / 3 * 4) << "27 × 3 floats in base64";
+  EXPECT_EQ(body["tets"].get<std::string>().size(), 8u * 6 * 16 / 3 * 4) << "six tets a cell, four numbers each";
+  EXPECT_FALSE(body.contains("container"));
+  const nlohmann::json& fields = body["frames"][2]["fields"];
+  for (const char* name : {"pressure", "von_mises"}) {
+    EXPECT_EQ(fields[name]["values"].get<std::string>().size(), 36u) << name << ": 27 bytes in base64";
+    EXPECT_LE(fields[name]["low"], 0.0);
+    EXPECT_GT(fields[name]["high"], 0.0) << name;
+  }
+  EXPECT_FALSE(fields.contains("contact_pressure")) << "nothing touches it";
   EXPECT_EQ(v["law_curves"][0]["curves"][0]["y"][0], 3600.0);
 }
 

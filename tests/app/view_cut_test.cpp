@@ -196,7 +196,7 @@ TEST(LiveCut, LeavesTheHandItsHold) {
   }
   ASSERT_GT(patch.size(), 5u);
   body.grab()->hold(patch, simulation.displacement(), simulation.masses(), 100.0);
-  body.grab()->draw({0.003, 0.0, 0.0});
+  body.grab()->draw({0.003, 0.0, 0.0}, 0.001);
   const std::atomic<bool> stop{false};
   app::advance_to(body.built(), OnInversion::go_on, 0.5, stop);
   const double before = body.grab()->force().x;

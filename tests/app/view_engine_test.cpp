@@ -120,7 +120,7 @@ TEST(LiveHandOver, RingKeepsOrderAndRefusesWhatDoesNotFit) {
 
 // Every command survives its bytes; any other bytes are refused or are the bytes of the command they give.
 TEST(LiveCommand, BytesAreReadBackOrRefused) {
-  for (std::uint8_t kind = 1; kind <= 17; ++kind) {
+  for (std::uint8_t kind = 1; kind <= 19; ++kind) {
     Command command{
         .kind = static_cast<CommandKind>(kind), .tool = 2, .sequence = 77, .index = 1, .values = {0.5f, 0.25f, 1.0f}};
     const std::string bytes = encode_command(command);
@@ -327,6 +327,39 @@ TEST(LiveEngine, GrabPullsTheSurfaceAndLetsGo) {
   ASSERT_TRUE(watcher.until([&] { return !watcher.last.grabbing && watcher.last.time > then + 1.0; }));
   EXPECT_LT(std::abs(watcher.last.displacement[vertex].x), 0.05 * drawn);
   engine.stop();
+}
+
+// A patch that is bonded to the hand goes exactly where the hand goes, at the hand's bounded speed, on either side of a
+// vertex; its force is what holds the body there: more than that of a spring, which gives.
+TEST(LiveEngine, ABondedPatchGoesWhereTheHandGoes) {
+  const std::atomic<bool> stop{false};
+  const Vec3d way{0.003, -0.001, 0.0};
+  const auto drawn = [&](GrabSpring::Hold how) {
+    auto body = std::make_unique<LiveBody>(variant_of(test::small_scene()), no_files());
+    const Simulation& simulation = body->built().simulation;
+    std::vector<std::uint32_t> patch;  // across the middle of a side, free to move
+    for (std::uint32_t v = 0; v < simulation.mesh().vertices.size(); ++v) {
+      const Vec3d& x = simulation.mesh().vertices[v];
+      if (std::abs(x.x - 0.02) < 1e-9 && std::abs(x.z - 0.01) < 1e-9) patch.push_back(v);
+    }
+    EXPECT_GT(patch.size(), 2u);
+    body->grab()->hold(patch, simulation.displacement(), simulation.masses(), 50.0, how);
+    double fastest = 0.0;
+    for (int frame = 1; frame <= 500; ++frame) {
+      body->grab()->draw(way * std::min(1.0, frame / 10.0), kFrame);
+      app::advance_to(body->built(), OnInversion::go_on, frame * kFrame, stop);
+      fastest = std::max(fastest, norm(simulation.velocity()[patch.front()]));
+    }
+    if (how == GrabSpring::Hold::bonded) {
+      for (const std::uint32_t v : patch) EXPECT_NEAR(norm(simulation.displacement()[v] - way), 0.0, 1e-12) << v;
+      EXPECT_NEAR(fastest, norm(way) / 0.01, 1e-6) << "the way of ten frames at an even speed";
+    }
+    return body->grab()->force();
+  };
+  const Vec3d bonded = drawn(GrabSpring::Hold::bonded), sprung = drawn(GrabSpring::Hold::springs);
+  EXPECT_GT(bonded.x, sprung.x);
+  EXPECT_LT(bonded.y, sprung.y);
+  EXPECT_LT(bonded.y, 0.0);
 }
 
 // A parameter that cannot be is told, and the body there is goes on.

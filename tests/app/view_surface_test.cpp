@@ -51,6 +51,32 @@ TEST(LiveSurface, ShowsShape) {
   for (const double q : surface.field(Field::shape, deformed(body, turn, kStill))) EXPECT_NEAR(q, 1.0, 1e-12);
 }
 
+// Von Mises' stress of a linear tissue is √3 · 2 μ |γ| in simple shear by 2 γ and E ε in uniaxial stress, inside as at the surface;
+// the whole body is numbered after its surface, and its keyframe has its tets.
+TEST(LiveSurface, ShowsStressInside) {
+  const LiveBody body(variant_of("youngs_modulus_Pa = 3600\npoisson_ratio = 0.2"), {});
+  Mat3d shear{};
+  shear(0, 1) = shear(1, 0) = 0.01;
+  const Mat3d pulled = diagonal_of(0.01, -0.002, -0.002);
+  const Snapshot sheared = deformed(body, shear, kStill), stretched = deformed(body, pulled, kStill);
+  Surface skin(sheared.shape), whole(sheared.shape, true);
+  const TetMesh& mesh = sheared.shape->mesh;
+  EXPECT_EQ(whole.size(), mesh.vertices.size());
+  EXPECT_LT(skin.size(), whole.size());
+  EXPECT_EQ(whole.triangles(), skin.triangles()) << "vertices at the surface keep their numbers";
+  ASSERT_EQ(whole.tets().size(), 4 * mesh.tets.size());
+  for (std::size_t i = 0; i < whole.tets().size(); ++i)
+    ASSERT_EQ(whole.mesh_vertex(whole.tets()[i]), mesh.tets[i / 4][i % 4]);
+  const double mu = 3600.0 / (2.0 * 1.2);
+  for (const double x : whole.field(Field::von_mises, sheared)) EXPECT_NEAR(x, std::sqrt(3.0) * 2.0 * mu * 0.01, 1e-6);
+  for (const double x : whole.field(Field::von_mises, stretched)) EXPECT_NEAR(x, 36.0, 1e-6);
+  for (const double x : whole.field(Field::contact_pressure, sheared)) EXPECT_EQ(x, 0.0) << "nothing touches it";
+  const std::string all = keyframe_message(whole, 7), outside = keyframe_message(skin, 7);
+  const std::size_t inner = whole.size() - skin.size();
+  const auto more = static_cast<double>(all.size() - outside.size());
+  EXPECT_NEAR(more, static_cast<double>(4 + 16 * mesh.tets.size() + 13 * inner), 3.0) << "up to a multiple of 4";
+}
+
 // Pressure is −K tr ε of a linear tissue, with −⅔ η tr ε̇ of its viscosity; −κ (J − 1) of a hyperelastic one.
 TEST(LiveSurface, ShowsPressure) {
   const LiveBody linear(variant_of("youngs_modulus_Pa = 3600\npoisson_ratio = 0.4\nviscosity_Pa_s = 5"), {});

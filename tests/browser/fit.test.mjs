@@ -67,7 +67,10 @@ describe("a fit on a laptop", () => {
       const place = (name) => document.querySelector(name).getBoundingClientRect().top;
       return [".fit-lines", ".fit-curves", ".parameter-table", ".conclusions", ".key-figures"].map(place);
     });
-    assert.deepEqual(order, [...order].sort((a, b) => a - b));
+    assert.deepEqual(
+      order,
+      [...order].sort((a, b) => a - b),
+    );
     assert.equal(await page.locator(".conclusions li").count(), 3);
     assert.match(await page.locator(".key-figures").innerText(), /16 of 20 starts/);
     assert.equal(await page.locator(".banner").count(), 0);

@@ -57,7 +57,11 @@ describe("reader's actions", () => {
     }, svg);
     assert.equal(read.broken, false);
     assert.ok(read.long >= 3, "a path a line");
-    for (const text of ["Linear", "Depth [mm]"]) assert.ok(read.texts.some((one) => one.includes(text)), text);
+    for (const text of ["Linear", "Depth [mm]"])
+      assert.ok(
+        read.texts.some((one) => one.includes(text)),
+        text,
+      );
     assert.ok(read.texts.filter((one) => /^[\d.]+$/.test(one)).length >= 6, "numbers at both axes");
     assert.equal(read.images, 0);
     await page.mouse.move(2, 2);

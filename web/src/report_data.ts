@@ -75,8 +75,10 @@ export interface SurfaceData {
   rest: Base64; // f32, xyz per vertex [m]
   fixed: Base64; // u8 per vertex: 1 held, 2 driven by a tool, 0 free
   instruments: InstrumentForm[];
+  container?: VesselForm;
   tissue?: string; // name of the tissue of most of the body
   regions?: RegionSurface[]; // of all other regions; their inner vertices come after those of the outer surface
+  tets?: Base64; // u32, four per tet, of the whole body, whose other vertices come last; none: surfaces alone
   frames: FrameData[]; // in time order, may be empty
 }
 
@@ -96,10 +98,28 @@ export interface InstrumentForm {
   size_m: number[]; // of a block: along its own x, y, z; of a blade: both ends of its edge, six numbers
 }
 
+/** The vessel about a body. */
+export interface VesselForm {
+  kind: "cylinder" | "box";
+  radius_m?: number; // of a cylinder
+  width_m?: number; // of a box, along its own x …
+  length_m?: number; // … and y
+  height_m: number; // of the wall
+  origin: number[]; // centre of its floor [m]
+  axes: number[]; // rows of its rotation, nine; its z is up
+}
+
 /** Where an instrument is in a frame. */
 export interface InstrumentPlace {
   points: number[]; // xyz each [m]: the centre line of a needle from the hand to the tip; else its tip
   axes: number[]; // rows of its rotation, nine
+}
+
+/** A field at each vertex: value = low + u8 / 255 × (high − low) [SI]. */
+export interface FieldData {
+  low: number; // 0 lies between these
+  high: number;
+  values: Base64; // u8 per vertex (of tets the mean of the adjacent ones)
 }
 
 export interface FrameData {
@@ -108,11 +128,13 @@ export interface FrameData {
   displacement: Base64; // i16, xyz per vertex
   intensity_max: number; // equivalent shear strain s = u8 / 255 × this
   intensity: Base64; // u8 per vertex (mean of the adjacent tets)
+  fields?: Record<string, FieldData>; // besides the intensity: pressure, von_mises, contact_pressure
   instruments: InstrumentPlace[]; // one for each of the surface's
   triangles?: Base64; // where the surface has become another, from this frame on; vertices that come later are not in
   // earlier frames
   kinds?: Base64; // u8 per triangle, from this frame on: 0 skin, 1 a face that was cut, 2 skin whose capsule is torn; a
   // frame with other triangles and no kinds has skin only
+  tets?: Base64; // likewise, where the body has become another
   regions?: Base64[]; // u32, triangles of each of the surface's regions, from this frame on
 }
 

@@ -97,7 +97,9 @@ describe("default charts", () => {
       ],
       log_x: true,
     };
-    const [steep] = variantCharts(scene([], [{ ...spec, lines: [{ label: "error", x: [1, 10], y: [100, 0.1] }], log_y: true }]));
+    const [steep] = variantCharts(
+      scene([], [{ ...spec, lines: [{ label: "error", x: [1, 10], y: [100, 0.1] }], log_y: true }]),
+    );
     expect(steep!.logY).toBe(true);
     expect([...steep!.lines[0]!.y]).toEqual([2, -1]);
     const [model] = variantCharts(scene([], [spec]));
@@ -201,7 +203,12 @@ describe("names at the ends of lines", () => {
     expect(spread([10, 50, 90], 12, 0, 100)).toEqual([10, 50, 90]);
     expect(spread([50, 50, 50], 10, 0, 100)).toEqual([40, 50, 60]);
     expect(spread([95, 96, 20], 10, 0, 100)).toEqual([90, 100, 20]);
-    const sixteen = spread(Array.from({ length: 16 }, () => 30), 14, 0, 260);
+    const sixteen = spread(
+      Array.from({ length: 16 }, () => 30),
+      14,
+      0,
+      260,
+    );
     const steps = sixteen.slice(1).map((y, i) => y - sixteen[i]!);
     expect(Math.min(...steps)).toBeGreaterThan(13.99);
     expect([sixteen[0]! >= 0, sixteen[15]! <= 260]).toEqual([true, true]);
@@ -216,7 +223,11 @@ describe("names at the ends of lines", () => {
 
   it("are there for many lines of a wide chart alone", () => {
     const lines = ["a", "b", "c", "d"].map((label) => ({ ...line([0], [0]), label }));
-    expect([namesEnds(lines, 600), namesEnds(lines, 300), namesEnds(lines.slice(1), 600)]).toEqual([true, false, false]);
+    expect([namesEnds(lines, 600), namesEnds(lines, 300), namesEnds(lines.slice(1), 600)]).toEqual([
+      true,
+      false,
+      false,
+    ]);
   });
 });
 
@@ -260,7 +271,6 @@ describe("scene state", () => {
     state.pin("b");
     expect(state.highlight).toBeNull();
   });
-
 
   it("hides, shows, and shows alone; alone once more shows all", () => {
     const state = new SceneState(["a", "b", "c"]);

@@ -181,7 +181,8 @@ describe("residuals", () => {
 });
 
 describe("a fit in short", () => {
-  const words = (fit: Parameters<typeof fitLines>[0]) => Object.fromEntries(fitLines(fit).map((l) => [l.name, l.words]));
+  const words = (fit: Parameters<typeof fitLines>[0]) =>
+    Object.fromEntries(fitLines(fit).map((l) => [l.name, l.words]));
 
   it("is five lines, each one sentence, whatever is known", () => {
     for (const fit of [fitFixture(), bareFit(), largeFit()]) {

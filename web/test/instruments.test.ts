@@ -98,7 +98,14 @@ describe("events", () => {
   it("lie on the line of the instrument that they happened to, and on no other's", () => {
     const other = { time_s: 1.5, depth_m: 0, event: "contact", instrument: "plate" };
     const pressed = variant([[0.5, 0.005, "contact"]]);
-    const plate = { columns: ["time_s", "depth_m", "force_N"], data: [[0, 1, 2], [0, 0.1, 0.2], [0, 0, 8]] };
+    const plate = {
+      columns: ["time_s", "depth_m", "force_N"],
+      data: [
+        [0, 1, 2],
+        [0, 0.1, 0.2],
+        [0, 0, 8],
+      ],
+    };
     const made: VariantData = {
       ...pressed,
       events: [...pressed.events, other],

@@ -1,8 +1,12 @@
 // What the live page reads and writes are the bytes that apps/view/ writes and reads.
 import { describe, expect, test } from "vitest";
-import { ColourRange, COLOURINGS, colouringOf, unitOf, valuesOf } from "../src/live/colouring.ts";
+import { ColourRange, valuesOf } from "../src/live/colouring.ts";
+import { COLOURINGS, colouringOf, unitOf } from "../src/mesh3d/fields.ts";
 import { History } from "../src/live/history.ts";
+import { paceText } from "../src/live/pace.ts";
+import { legsTo, Placing, startOf } from "../src/live/placing.ts";
 import { decodeMessage, encodeCommand } from "../src/live/protocol.ts";
+import { rimOf } from "../src/mesh3d/vessel_model.ts";
 
 const bytes = (buffer: ArrayBuffer) => Array.from(new Uint8Array(buffer));
 
@@ -13,7 +17,7 @@ describe("commands", () => {
     expect(place.byteLength).toBe(20);
     expect(new DataView(place).getUint8(1)).toBe(2);
     expect(new DataView(place).getFloat32(12, true)).toBe(-1);
-    const grab = encodeCommand({ kind: "grab", index: 9, values: [1, 2, 3] }, 7);
+    const grab = encodeCommand({ kind: "grab", tool: 0, index: 9, values: [1, 2, 3] }, 7);
     expect([grab.byteLength, new DataView(grab).getUint32(8, true), new DataView(grab).getFloat32(20, true)]).toEqual([
       24, 9, 3,
     ]);
@@ -146,5 +150,97 @@ describe("history", () => {
     history.add(samples(0, 0.004));
     expect(history.time).toEqual([0.001]);
     expect(history.csv(["needle"])).toBe("time_s,needle_depth_m,needle_force_N\n0.001,0.0001,0.002\n");
+  });
+});
+
+describe("force against depth", () => {
+  const row = (time: number, depth: number, force: number) => ({ epoch: 1, time, depth: [depth], force: [force] });
+
+  test("keeps what was gone however long the tool stands, and the force that it comes to", () => {
+    const history = new History(1);
+    const press = Array.from({ length: 100 }, (_, i) => row(0.001 * (i + 1), 1e-4 * i, 0.01 * i));
+    history.add({ kind: "samples", tools: 1, rows: press });
+    for (let part = 0; part < 40; part++) {
+      const rest = Array.from({ length: 10_000 }, (_, i) => row(0.1 + 0.001 * (10_000 * part + i + 1), 99e-4, 0.5));
+      history.add({ kind: "samples", tools: 1, rows: rest });
+    }
+    expect(history.time.length).toBeLessThan(140_000);
+    const { depth, force } = history.paths[0]!;
+    expect(depth.length).toBe(101);
+    expect(depth.slice(0, 3)).toEqual([0, 1e-4, 2e-4]);
+    expect([force[99], force[100]]).toEqual([0.99, 0.5]);
+    history.clear(2);
+    expect(history.paths[0]!.depth).toEqual([]);
+  });
+});
+
+describe("placing a tool", () => {
+  const info = {
+    name: "n",
+    instrument: true,
+    direction: [0, 0, -1],
+    side: [1, 0, 0],
+    third: [0, 1, 0],
+    least_m: -0.05,
+    most_m: 0.05,
+    speed_m_s: 0.01,
+    can_play: true,
+  };
+  // It started at (0, 0, 0.1), and is 4 cm deep and 1 cm aside now.
+  const state = {
+    depth: 0.04,
+    aside: [0.01, 0],
+    force: [0, 0, 0] as [number, number, number],
+    axes: [],
+    points: [0.01, 0, 0.06],
+  };
+
+  test("goes out, aside and down, each leg from where the last one ended", () => {
+    expect(startOf(info, state)).toEqual([0, 0, 0.1].map((x) => expect.closeTo(x, 12)));
+    const legs = legsTo([0.02, -0.01, 0.07], info, state, 0.02, 0.1); // all of the body is deeper than 2 cm
+    const close = (depth: number, x: number, y: number, quick: boolean) => ({
+      depth: expect.closeTo(depth, 12),
+      aside: [expect.closeTo(x, 12), expect.closeTo(y, 12)],
+      quick,
+    });
+    expect(legs).toEqual([
+      close(0.017, 0.01, 0, false),
+      close(0.017, 0.02, -0.01, true),
+      close(0.027, 0.02, -0.01, true),
+    ]);
+    expect(legsTo([0, 0, 0], info, { ...state, points: [] }, 0, 0.1)).toEqual([]);
+  });
+
+  test("sends a leg once the one before it is gone, and gives the speed back at the end", () => {
+    const sent: number[] = [];
+    const speeds: (number | null)[] = [];
+    const placing = new Placing(
+      ({ depth }) => sent.push(depth),
+      (speed) => speeds.push(speed),
+    );
+    placing.begin(legsTo([0.02, -0.01, 0.07], info, state, 0.02, 0.1));
+    placing.follow(state);
+    expect(sent.length).toBe(1);
+    for (const leg of [
+      [0.017, 0.01, 0],
+      [0.017, 0.02, -0.01],
+      [0.027, 0.02, -0.01],
+    ])
+      placing.follow({ ...state, depth: leg[0]!, aside: leg.slice(1) });
+    expect(sent.map((depth) => Number(depth.toFixed(6)))).toEqual([0.017, 0.017, 0.027]);
+    expect([placing.busy, speeds[speeds.length - 1]]).toEqual([false, null]);
+  });
+});
+
+describe("the container", () => {
+  test("has the rim of its shape", () => {
+    const circle = rimOf({ kind: "cylinder", radius_m: 0.05, height_m: 0.1, origin: [0, 0, 0], axes: [] });
+    for (const [x, y] of circle) expect(Math.hypot(x, y)).toBeCloseTo(0.05, 12);
+    const box = rimOf({ kind: "box", width_m: 0.04, length_m: 0.02, height_m: 0.1, origin: [0, 0, 0], axes: [] });
+    expect(box.map(([x, y]) => [Math.abs(x), Math.abs(y)])).toEqual(Array(4).fill([0.02, 0.01]));
+  });
+
+  test("and the pace are told as people say it", () => {
+    expect(paceText(0.3)).toBe("0.30 × real time");
   });
 });

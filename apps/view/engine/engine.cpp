@@ -44,6 +44,8 @@ Engine::Engine(const Variant& variant, MeshLoader load) : load_(std::move(load))
   for (const ToolInfo& x : tools_) speeds_.push_back(x.speed);
   targets_.resize(tools_.size());
   forms_ = json_text(instrument_forms_json(body_->built().instruments));
+  if (const auto& container = body_->built().container)
+    vessel_ = json_text(vessel_json(container->options(), body_->built().simulation.mesh().vertices));
   can_grab_ = body_->grab() != nullptr;
   why_no_cut_ = body_->why_no_cut();
   const TetMesh& mesh = body_->built().simulation.mesh();
@@ -165,6 +167,7 @@ void Engine::apply(const Command& command) {
     case CommandKind::seek:
     case CommandKind::rate:
     case CommandKind::visible:
+    case CommandKind::inside:
       return;  // the server's, a replay's
   }
 }
@@ -198,7 +201,8 @@ void Engine::apply_grab(const Command& command) {
     hand_ = {};
     std::vector<std::uint32_t> patch = patch_around(simulation.mesh(), at, command.index, kPatch * reach_);
     const double stiffness = kHandStiffness * youngs_modulus(variant_.tissue) * kPatch * reach_;
-    grab->hold(std::move(patch), simulation.displacement(), simulation.masses(), stiffness);
+    const GrabSpring::Hold how = command.tool == 1 ? GrabSpring::Hold::bonded : GrabSpring::Hold::springs;
+    grab->hold(std::move(patch), simulation.displacement(), simulation.masses(), stiffness, how);
   }
   hand_target_ = shortened(to - hand_at_, kHandReach * reach_);
 }
@@ -232,7 +236,7 @@ void Engine::draw_hand() {
   GrabSpring* grab = body_->grab();
   if (grab == nullptr || !grab->holds()) return;
   hand_ += shortened(hand_target_ - hand_, kHandSpeed * kFrame);
-  grab->draw(hand_);
+  grab->draw(hand_, kFrame);
 }
 
 /// Takes the body back to rest; one that an error has left behind is made anew, and where that cannot be, it goes on.
@@ -397,10 +401,12 @@ void Engine::publish() {
   state.displacement.assign(u.begin(), u.end());
   state.velocity.clear();
   state.branches.clear();
-  if (want_pressure_.load(std::memory_order_relaxed)) {
+  if (want_stress_.load(std::memory_order_relaxed)) {
     state.velocity.assign(v.begin(), v.end());
     state.branches = body_->branches();
   }
+  state.contact_pressure.clear();
+  if (want_contact_.load(std::memory_order_relaxed)) state.contact_pressure = simulation.contact_fields().pressure;
   state.tools.resize(tools_.size());
   state.playing = false;
   for (std::size_t i = 0; i < tools_.size(); ++i) {

@@ -56,11 +56,15 @@ class Engine final : public Source {
   const Snapshot* latest() override { return latest_.take(); }
   bool next_sample(ForceSample& sample) override { return samples_.pop(sample); }
 
-  void want_pressure(bool wanted) override { want_pressure_.store(wanted, std::memory_order_relaxed); }
+  void want_fields(bool stress, bool contact) override {
+    want_stress_.store(stress, std::memory_order_relaxed);
+    want_contact_.store(contact, std::memory_order_relaxed);
+  }
 
   const std::vector<ToolInfo>& tools() const override { return tools_; }
   const std::vector<ParameterInfo>& parameters() const override { return parameters_; }
   const std::string& forms() const override { return forms_; }
+  std::string vessel() const override { return vessel_; }
   bool can_grab() const override { return can_grab_; }
   std::size_t vertices() const override { return vertices_; }
   std::size_t tets() const override { return tets_; }
@@ -96,7 +100,7 @@ class Engine final : public Source {
   std::vector<ToolInfo> tools_;
   std::vector<ParameterInfo> parameters_;
   std::vector<TissueParameter> handles_;  ///< on each of them
-  std::string forms_;
+  std::string forms_, vessel_;
   bool can_grab_ = false;
   std::string why_no_cut_;
   std::size_t vertices_ = 0, tets_ = 0;
@@ -104,7 +108,7 @@ class Engine final : public Source {
   Inbox inbox_;
   Ring<ForceSample, 8192> samples_;
   Latest<Snapshot> latest_;
-  std::atomic<bool> stop_{false}, want_pressure_{false};
+  std::atomic<bool> stop_{false}, want_stress_{false}, want_contact_{false};
   std::thread thread_;
 
   // Of the engine's thread.

@@ -10,14 +10,18 @@ namespace glisson::view {
 namespace {
 
 constexpr double kDampingRatio = 0.5;
+/// Change of velocity that a bond gives in a step at most [m/s]: where a container is bonded to the same vertex, both would tear
+/// at it with all that a step allows.
+constexpr double kMostKick = 5.0;
 /// What damping of that ratio takes off the explicit step, as a share of frequency: (√(1 + ζ²) − ζ)⁻².
 constexpr double kForDamping = 2.7;
 
 }  // namespace
 
 void GrabSpring::hold(std::vector<std::uint32_t> vertices, std::span<const Vec3d> displacement,
-                      std::span<const double> masses, double stiffness) {
+                      std::span<const double> masses, double stiffness, Hold how) {
   let_go();
+  how_ = how;
   vertices_ = std::move(vertices);
   std::sort(vertices_.begin(), vertices_.end());
   for (const std::uint32_t v : vertices_) held_at_.push_back(displacement[v]);
@@ -32,7 +36,7 @@ void GrabSpring::share_out(std::span<const double> masses) {
   if (!(mass > 0.0)) return let_go();
   share_.clear();
   for (const std::uint32_t v : vertices_) share_.push_back(masses[v] / mass);
-  squared_frequency_ = stiffness_ / mass;
+  squared_frequency_ = how_ == Hold::springs ? stiffness_ / mass : 0.0;
   damping_ = 2.0 * kDampingRatio * std::sqrt(stiffness_ * mass);
 }
 
@@ -60,13 +64,49 @@ void GrabSpring::let_go() {
   held_at_.clear();
   last_.clear();
   share_.clear();
-  way_ = force_ = {};
+  way_ = force_ = gone_ = {};
   squared_frequency_ = 0.0;
 }
 
 int GrabSpring::most_drag_stages() const { return kMostDragStages; }
 
+void GrabSpring::draw(const Vec3d& way, double within) {
+  way_ = way;
+  speed_ = norm(way_ - gone_) / within;
+}
+
+/// Each vertex to where the hand is at the end of the step; what a support holds stays.
+void GrabSpring::constrain(const InteractionStep& step) {
+  if (how_ != Hold::bonded || !holds()) return;
+  const Vec3d left = way_ - gone_;
+  const double far = norm(left), reach = speed_ * step.h;
+  gone_ = far <= reach ? way_ : gone_ + left * (reach / far);
+  force_ = {};
+  for (std::size_t i = 0; i < vertices_.size(); ++i) {
+    const std::uint32_t place = step.place_of[vertices_[i]];
+    if (place == InteractionStep::kNowhere) continue;
+    const ActiveVertex& v = step.vertices[place];
+    Vec3d missing = (held_at_[i] + gone_ - v.displacement) * (1.0 / step.h) - v.velocity;
+    if (const double kick = norm(missing); kick > kMostKick) missing = missing * (kMostKick / kick);
+    Vec3d impulse{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double mobility = step.mobility[place][k];
+      if (mobility > 0.0) impulse[k] = missing[k] / mobility;
+    }
+    step.push(place, impulse);
+    force_ += impulse * (1.0 / step.h);
+  }
+}
+
+void GrabSpring::tell_held(const InteractionStep& step, HeldRows& held) const {
+  if (how_ != Hold::bonded) return;
+  for (const std::uint32_t v : vertices_) {
+    if (step.place_of[v] != InteractionStep::kNowhere) held.add_vertex(v);
+  }
+}
+
 void GrabSpring::add_forces(const InteractionStep& step) {
+  if (how_ == Hold::bonded) return;
   force_ = {};
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
     const std::uint32_t place = step.place_of[vertices_[i]];

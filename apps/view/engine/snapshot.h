@@ -96,8 +96,10 @@ struct Snapshot {
   std::shared_ptr<const BodyShape> shape;
   std::shared_ptr<const std::map<int, Tissue>> tissues;  ///< by region number; another one from a change on
   std::vector<Vec3d> displacement;
-  std::vector<Vec3d> velocity;         ///< where someone wants to see pressure, else empty
-  std::vector<BranchMemory> branches;  ///< of each tissue block, where someone wants to see pressure, else empty
+  std::vector<Vec3d> velocity;         ///< where someone wants to see the stress, else empty
+  std::vector<BranchMemory> branches;  ///< of each tissue block, where someone wants to see the stress, else empty
+  std::vector<double>
+      contact_pressure;  ///< per vertex [Pa], where someone wants to see it and something touches, else empty
   std::vector<ToolState> tools;
   Vec3d grab_force{};
   double cut_area = 0.0, cut_longest = 0.0;  ///< of what the hand's blade has cut, at rest [m²]; that a piece took [s]

@@ -8,6 +8,7 @@
 
 #include "element/tet_fields.h"
 #include "material/shape_measure.h"
+#include "report/field_values.h"
 #include "view/engine/live_body.h"
 
 namespace glisson::view {
@@ -25,8 +26,9 @@ Mat3d gradient(const std::vector<Vec3d>& displacement, const Tet& tet, const std
 
 }  // namespace
 
-Surface::Surface(std::shared_ptr<const BodyShape> shape) : shape_(std::move(shape)) {
+Surface::Surface(std::shared_ptr<const BodyShape> shape, bool whole) : shape_(std::move(shape)) {
   number_vertices();
+  if (whole) number_inside();
   count_pieces();
   rim_ = kRim * diagonal(shape_->mesh);
   const TetMesh& mesh = shape_->mesh;
@@ -58,18 +60,28 @@ void Surface::number_vertices() {
   tissue_ = surface.tissue;
 }
 
-/// Triangles in surface vertices; those that are new get the next numbers.
+/// What no surface has, in the order of the tets.
+void Surface::number_inside() {
+  for (const Tet& tet : shape_->mesh.tets) {
+    for (const std::uint32_t v : tet) tets_.push_back(number_of(v));
+  }
+}
+
+/// A vertex's own number; a new one gets the next.
+std::uint32_t Surface::number_of(std::uint32_t vertex) {
+  if (number_[vertex] == kInside) {
+    number_[vertex] = static_cast<std::uint32_t>(vertices_.size());
+    vertices_.push_back(vertex);
+  }
+  return number_[vertex];
+}
+
+/// Triangles in surface vertices.
 std::vector<std::uint32_t> Surface::numbered(const std::vector<Triangle>& triangles) {
   std::vector<std::uint32_t> numbers;
   numbers.reserve(3 * triangles.size());
   for (const Triangle& triangle : triangles) {
-    for (const std::uint32_t v : triangle) {
-      if (number_[v] == kInside) {
-        number_[v] = static_cast<std::uint32_t>(vertices_.size());
-        vertices_.push_back(v);
-      }
-      numbers.push_back(number_[v]);
-    }
+    for (const std::uint32_t v : triangle) numbers.push_back(number_of(v));
   }
   return numbers;
 }
@@ -112,7 +124,13 @@ std::vector<double> Surface::mean(OfTet of_tet) const {
 }
 
 std::vector<double> Surface::field(Field field, const Snapshot& state) {
-  if (field == Field::pressure) return pressure(state);
+  if (is_of_stress(field)) return of_stress(field, state);
+  if (field == Field::contact_pressure) {
+    std::vector<double> own(vertices_.size(), 0.0);
+    for (std::size_t i = 0; i < own.size() && !state.contact_pressure.empty(); ++i)
+      own[i] = state.contact_pressure[vertices_[i]];
+    return own;
+  }
   const auto blunt = [&](std::size_t i) {
     return one_minus_q(gradient(state.displacement, near_[i].tet, near_[i].gradients));
   };
@@ -170,7 +188,7 @@ std::vector<BranchMemory> Surface::near_branches(const Snapshot& state) const {
   return memory;
 }
 
-std::vector<double> Surface::pressure(const Snapshot& state) {
+std::vector<double> Surface::of_stress(Field field, const Snapshot& state) {
   if (!near_body_ || tissues_ != state.tissues) {
     build_near_body(*state.tissues);
     tissues_ = state.tissues;
@@ -179,10 +197,9 @@ std::vector<double> Surface::pressure(const Snapshot& state) {
   const std::vector<Vec3d> at_rest(state.velocity.size() < vertices ? vertices : 0);
   const std::vector<Vec3d>& velocity = at_rest.empty() ? state.velocity : at_rest;
   const TetFields fields = tet_fields(*near_body_, state.displacement, velocity, near_branches(state));
-  return mean([&](std::size_t i) {
-    const double* stress = &fields.stress[6 * i];
-    return -(stress[0] + stress[1] + stress[2]) / 3.0;
-  });
+  const std::vector<double> values =
+      field == Field::pressure ? pressure_of(fields.stress) : von_mises_of(fields.stress);
+  return mean([&](std::size_t i) { return values[i]; });
 }
 
 }  // namespace glisson::view

@@ -20,7 +20,8 @@ namespace glisson::view {
 
 class Surface {
  public:
-  explicit Surface(std::shared_ptr<const BodyShape> shape);
+  /// @param whole  with the tets and all vertices inside, which come last
+  explicit Surface(std::shared_ptr<const BodyShape> shape, bool whole = false);
 
   const BodyShape& shape() const { return *shape_; }
   std::size_t size() const { return vertices_.size(); }
@@ -31,7 +32,9 @@ class Surface {
     std::vector<std::uint32_t> triangles;  ///< in surface vertices
   };
   const std::vector<Region>& regions() const { return regions_; }  ///< inside the body
-  const std::string& tissue() const { return tissue_; }            ///< name of the largest region
+  /// In surface vertices, four each; empty unless it is whole.
+  const std::vector<std::uint32_t>& tets() const { return tets_; }
+  const std::string& tissue() const { return tissue_; }  ///< name of the largest region
   /// Mesh vertex of a surface vertex.
   std::uint32_t mesh_vertex(std::size_t i) const { return vertices_[i]; }
   /// 1 held, 2 driven, 0 free or inside.
@@ -45,18 +48,20 @@ class Surface {
   bool strays(const Snapshot& state) const;
   std::size_t pieces() const { return pieces_; }  ///< that the body is in
 
-  /// A field at each surface vertex, the mean over the tets around it: s [-], q [-], or p = −⅓ tr σ of the stress that makes
-  /// the forces [Pa]. Cost: a pass over the tets at the surface; pressure makes a body of them first, and where tets share
-  /// their volume change of those that touch them, too.
+  /// A field at each surface vertex: the contact pressure [Pa], or the mean over the tets around it of s [-], q [-],
+  /// p = −⅓ tr σ or von Mises' stress of the stress that makes the forces [Pa]. Cost: a pass over the tets at the surface;
+  /// stress makes a body of them first, and where tets share their volume change of those that touch them, too.
   std::vector<double> field(Field field, const Snapshot& state);
 
  private:
   void number_vertices();
+  void number_inside();
+  std::uint32_t number_of(std::uint32_t vertex);
   std::vector<std::uint32_t> numbered(const std::vector<Triangle>& triangles);
   void count_pieces();
   template <class OfTet>
   std::vector<double> mean(OfTet of_tet) const;
-  std::vector<double> pressure(const Snapshot& state);
+  std::vector<double> of_stress(Field field, const Snapshot& state);
   void build_near_body(const std::map<int, Tissue>& tissues);
   std::vector<BranchMemory> near_branches(const Snapshot& state) const;
 
@@ -66,7 +71,7 @@ class Surface {
     std::array<Vec3d, 3> gradients;  ///< ∂N/∂X of its vertices 1, 2, 3 [1/m]
   };
   std::shared_ptr<const BodyShape> shape_;
-  std::vector<std::uint32_t> vertices_, triangles_;
+  std::vector<std::uint32_t> vertices_, triangles_, tets_;
   std::vector<std::uint8_t> kinds_;
   std::vector<Region> regions_;
   std::string tissue_;

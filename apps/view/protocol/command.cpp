@@ -17,7 +17,7 @@ struct Payload {
   std::size_t bytes() const { return (index ? 4 : 0) + 4 * values; }
 };
 
-bool known(std::uint8_t kind) { return kind >= 1 && kind <= 18; }
+bool known(std::uint8_t kind) { return kind >= 1 && kind <= 19; }
 
 Payload payload_of(CommandKind kind) {
   switch (kind) {
@@ -33,6 +33,7 @@ Payload payload_of(CommandKind kind) {
     case CommandKind::pause:
     case CommandKind::colour:
     case CommandKind::visible:
+    case CommandKind::inside:
       return {true, 0};
     case CommandKind::parameter:
       return {true, 1};
@@ -73,6 +74,7 @@ std::string range_trouble(const Command& command, std::size_t values) {
   }
   if (command.kind == CommandKind::pause && command.index > 1) return "pause is 0 or 1";
   if (command.kind == CommandKind::visible && command.index > 1) return "visible is 0 or 1";
+  if (command.kind == CommandKind::inside && command.index > 1) return "inside is 0 or 1";
   if (command.kind == CommandKind::colour && command.index >= kFields) return "there is no such field";
   if (command.kind == CommandKind::cut && command.index > 1) return "a cut begins, 1, or goes on, 0";
   return {};

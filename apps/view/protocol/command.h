@@ -18,7 +18,7 @@ namespace glisson::view {
 enum class CommandKind : std::uint8_t {
   place = 1,       ///< of a tool: depth, aside along its x and y [m]
   speed = 2,       ///< at which a tool goes there [m/s]
-  grab = 3,        ///< index: vertex of the surface; where it is to be drawn [m]
+  grab = 3,        ///< index: vertex of the surface; where it is to be drawn [m]; tool 1: bonded, 0: by springs
   drag = 4,        ///< of what is grabbed: where to [m]
   let_go = 5,      ///< of what is grabbed
   pause = 6,       ///< index: 1 rest, 0 go on
@@ -33,6 +33,7 @@ enum class CommandKind : std::uint8_t {
   seek = 15,       ///< of a recorded run: to this time [s]
   rate = 16,       ///< of a recorded run: simulated time over that of the clock
   undo = 18,       ///< back to before the last stroke of the blade
+  inside = 19,     ///< index: 1 this viewer wants the whole body, 0 its surfaces; needs no lead
   visible = 17     ///< index: 1 this viewer is seen, 0 its page is hidden; needs no lead
 };
 
@@ -45,8 +46,10 @@ struct Command {
 };
 
 /// What a surface can be coloured by. Displacement is the page's own affair: it has that anyway.
-enum class Field : std::uint8_t { none, intensity, shape, pressure };
-inline constexpr std::size_t kFields = 4;
+enum class Field : std::uint8_t { none, intensity, shape, pressure, von_mises, contact_pressure };
+inline constexpr std::size_t kFields = 6;
+/// Whether a field follows from the stress.
+constexpr bool is_of_stress(Field field) { return field == Field::pressure || field == Field::von_mises; }
 
 /// No message is longer [bytes].
 inline constexpr std::size_t kLongestCommand = 36;

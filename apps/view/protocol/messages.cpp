@@ -124,6 +124,10 @@ std::string keyframe_message(const Surface& surface, std::uint32_t number) {
     out.u32(static_cast<std::uint32_t>(region.triangles.size() / 3));
     out.triangles(region.triangles);
   }
+  if (!surface.tets().empty()) {
+    out.u32(static_cast<std::uint32_t>(surface.tets().size() / 4));
+    out.triangles(surface.tets());
+  }
   return out.take();
 }
 
@@ -211,6 +215,7 @@ std::string hello_message(const Source& source, const SceneFacts& facts, const s
                         {"parameters", std::move(parameters)},
                         {"recorded", recorded_json(source.recorded())},
                         {"can_record", static_cast<bool>(facts.recorder)},
+                        {"container", source.vessel().empty() ? json() : json::parse(source.vessel())},
                         {"instruments", json::parse(facts.instruments)}});
 }
 

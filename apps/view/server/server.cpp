@@ -14,6 +14,8 @@
 namespace glisson::view {
 namespace {
 
+/// In the number of a keyframe: it has the whole body.
+constexpr std::uint32_t kWhole = 1u << 31;
 constexpr auto kTick = std::chrono::milliseconds(16);
 constexpr auto kTickAtRest = std::chrono::milliseconds(500);
 constexpr auto kAcceptAgain = std::chrono::milliseconds(100);
@@ -134,11 +136,14 @@ void Server::Impl::look() {
   parameters_ = state->parameters;
   if (state->shape_number != shape_number_) {
     shape_number_ = state->shape_number;
-    surface_ = std::make_unique<Surface>(state->shape);
-    keyframe_ = message(keyframe_message(*surface_, shape_number_));
+    skin_ = {};
+    whole_ = {};
+    skin_.surface = std::make_unique<Surface>(state->shape);
+    skin_.number = shape_number_;
+    skin_.keyframe = message(keyframe_message(*skin_.surface, skin_.number));
   }
   shown_ = state;
-  frames_ = {};
+  skin_.frames = whole_.frames = {};
   if (now - news_ >= kNewsEvery) send_news(*state, now);
   if (viewers_.empty()) return;
   const auto watching = viewers_;
@@ -182,8 +187,8 @@ void Server::Impl::wake() {
 /// What changes seldom goes as text, and only when it has changed.
 void Server::Impl::send_news(const Snapshot& state, Clock::time_point now) {
   news_ = now;
-  std::string text = state_message(state, surface_->pieces());
-  const std::string stray = surface_->strays(state) ? kStray : "";
+  std::string text = state_message(state, skin_.surface->pieces());
+  const std::string stray = skin_.surface->strays(state) ? kStray : "";
   std::string told;
   for (const std::string& line : {state.notice, stray, survived_, why_rejected_})
     told += (told.empty() || line.empty() ? "" : "\n") + line;
@@ -199,9 +204,10 @@ void Server::Impl::send_news(const Snapshot& state, Clock::time_point now) {
 }
 
 void Server::Impl::send_frame(Viewer& viewer) {
-  if (viewer.keyframe_ != shape_number_) {
-    viewer.keyframe_ = shape_number_;
-    viewer.send(keyframe_, true);
+  Picture& picture = picture_for(viewer);
+  if (viewer.keyframe_ != picture.number) {
+    viewer.keyframe_ = picture.number;
+    viewer.send(picture.keyframe, true);
   }
   if (viewer.samples_seen_ < samples_) {
     const std::uint64_t first = samples_ - history_.size();
@@ -210,21 +216,34 @@ void Server::Impl::send_frame(Viewer& viewer) {
                 true);
     viewer.samples_seen_ = samples_;
   }
-  viewer.send(frame_with(viewer.field_), true);
+  viewer.send(frame_with(picture, viewer.field_), true);
+}
+
+/// The whole body is numbered for the first who wants it.
+Server::Impl::Picture& Server::Impl::picture_for(const Viewer& viewer) {
+  if (!viewer.inside_) return skin_;
+  if (!whole_.surface) {
+    whole_.surface = std::make_unique<Surface>(shown_->shape, true);
+    whole_.number = shape_number_ | kWhole;
+    whole_.keyframe = message(keyframe_message(*whole_.surface, whole_.number));
+  }
+  return whole_;
 }
 
 /// The newest state with a field, packed for the first viewer that wants it.
-const Message& Server::Impl::frame_with(Field field) {
-  const auto frame_of = [this](Field f) -> Message& { return frames_[static_cast<std::size_t>(f)]; };
-  if (!frame_of(Field::none)) frame_of(Field::none) = message(frame_message(*shown_, *surface_, shape_number_));
+const Message& Server::Impl::frame_with(Picture& picture, Field field) {
+  const auto frame_of = [&](Field f) -> Message& { return picture.frames[static_cast<std::size_t>(f)]; };
+  if (!frame_of(Field::none)) frame_of(Field::none) = message(frame_message(*shown_, *picture.surface, picture.number));
   Message& frame = frame_of(field);
-  if (!frame) frame = message(with_field(*frame_of(Field::none), field, surface_->field(field, *shown_)));
+  if (!frame) frame = message(with_field(*frame_of(Field::none), field, picture.surface->field(field, *shown_)));
   return frame;
 }
 
 void Server::Impl::ask_for_fields() {
-  source_.want_pressure(std::any_of(viewers_.begin(), viewers_.end(),
-                                    [](const auto& viewer) { return viewer->field_ == Field::pressure; }));
+  const auto anyone = [&](auto wants) {
+    return std::any_of(viewers_.begin(), viewers_.end(), [&](const auto& viewer) { return wants(viewer->field_); });
+  };
+  source_.want_fields(anyone(is_of_stress), anyone([](Field field) { return field == Field::contact_pressure; }));
 }
 
 void Server::Impl::send_roles() {
@@ -271,8 +290,13 @@ void Server::Impl::obey(Viewer& viewer, Command command) {
   }
   if (command.kind == CommandKind::colour) {
     viewer.field_ = static_cast<Field>(command.index);
-    if (viewer.field_ == Field::pressure && !source_.has_stress()) viewer.field_ = Field::none;
+    const bool unknown = is_of_stress(viewer.field_) || viewer.field_ == Field::contact_pressure;
+    if (unknown && !source_.has_stress()) viewer.field_ = Field::none;
     return ask_for_fields();
+  }
+  if (command.kind == CommandKind::inside) {
+    viewer.inside_ = command.index == 1;
+    return;
   }
   if (command.kind == CommandKind::visible) {
     viewer.seen_ = command.index == 1;
@@ -280,8 +304,8 @@ void Server::Impl::obey(Viewer& viewer, Command command) {
   }
   if (!lead_.leads(viewer.session_)) return;  // those who watch have been told so
   if (command.kind == CommandKind::grab) {
-    if (!surface_ || command.index >= surface_->size()) return;
-    command.index = surface_->mesh_vertex(command.index);
+    if (!skin_.surface || command.index >= skin_.surface->size()) return;
+    command.index = skin_.surface->mesh_vertex(command.index);
   }
   source_.post(command);
 }

@@ -34,7 +34,15 @@ struct Server::Impl {
   Clock::duration standstill() const;
   void send_news(const Snapshot& state, Clock::time_point now);
   void send_frame(Viewer& viewer);
-  const Message& frame_with(Field field);
+  /// What is sent to those who see the surfaces of the body, or to those who see all of it.
+  struct Picture {
+    std::unique_ptr<Surface> surface;
+    std::uint32_t number = 0;  ///< of its keyframe
+    Message keyframe;
+    std::array<Message, kFields> frames;  ///< of the newest state, as far as someone wants them
+  };
+  Picture& picture_for(const Viewer& viewer);
+  const Message& frame_with(Picture& picture, Field field);
   void ask_for_fields();
   void send_roles();
   void came(const std::shared_ptr<Viewer>& viewer);
@@ -58,10 +66,9 @@ struct Server::Impl {
   Lead lead_;
 
   std::uint32_t shape_number_ = 0;
-  std::unique_ptr<Surface> surface_;
-  Message keyframe_, state_, notice_;
-  const Snapshot* shown_ = nullptr;      ///< the newest state
-  std::array<Message, kFields> frames_;  ///< of it, as far as someone wants them
+  Picture skin_, whole_;
+  Message state_, notice_;
+  const Snapshot* shown_ = nullptr;  ///< the newest state
   std::uint64_t frame_number_ = 0;
   std::deque<ForceSample> history_;
   Recording recording_;

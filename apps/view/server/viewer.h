@@ -51,7 +51,8 @@ struct Viewer : std::enable_shared_from_this<Viewer> {
   Field field_ = Field::intensity;  ///< that it is shown
   std::uint64_t samples_seen_ = 0;  ///< of all there ever were
   bool open_ = false, closing_ = false;
-  bool seen_ = true;  ///< its page is not hidden
+  bool seen_ = true;     ///< its page is not hidden
+  bool inside_ = false;  ///< it is sent the whole body, not its surfaces alone
   Clock::time_point writing_since_{};
 };
 

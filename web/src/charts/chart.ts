@@ -155,7 +155,10 @@ export class Chart {
         x: { time: false, auto: false, min: this.view.xMin, max: this.view.xMax, range: (_u, min, max) => [min, max] },
         y: { auto: false, min: this.view.yMin, max: this.view.yMax, range: (_u, min, max) => [min, max] },
       },
-      axes: [this.model.logX ? logAxis(this.model.xLabel) : xAxis(this.model.xLabel), this.model.logY ? logYAxis() : yAxis()],
+      axes: [
+        this.model.logX ? logAxis(this.model.xLabel) : xAxis(this.model.xLabel),
+        this.model.logY ? logYAxis() : yAxis(),
+      ],
       series: [{}, { paths: () => null, points: { show: false } }],
       cursor: {
         x: true,
@@ -269,7 +272,13 @@ export class Chart {
     const perY = plot.over.clientHeight / (this.view.yMax - this.view.yMin);
     let best: { key: string; far: number } | null = null;
     for (const line of shown) {
-      const far = distanceTo(line, (v) => (v - this.view.xMin) * perX, (v) => (this.view.yMax - v) * perY, x, y);
+      const far = distanceTo(
+        line,
+        (v) => (v - this.view.xMin) * perX,
+        (v) => (this.view.yMax - v) * perY,
+        x,
+        y,
+      );
       if (far <= POINTED && (!best || far < best.far)) best = { key: keyOf(line), far };
     }
     return best?.key ?? null;

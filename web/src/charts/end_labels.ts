@@ -58,10 +58,10 @@ export function spread(wanted: readonly number[], step: number, top: number, bot
   const blocks: { from: number; count: number; middle: number }[] = []; // neighbours that touch, around their mean
   for (let i = 0; i < order.length; i++) {
     blocks.push({ from: i, count: 1, middle: wanted[order[i]!]! });
-    for (let joined = true; joined; ) {
+    for (let joined = true; joined;) {
       joined = false;
       const block = blocks[blocks.length - 1]!;
-      const half = (0.5 * (block.count - 1)) * gap;
+      const half = 0.5 * (block.count - 1) * gap;
       block.middle = Math.min(bottom - half, Math.max(top + half, block.middle));
       const before = blocks[blocks.length - 2];
       if (!before || before.middle + 0.5 * (before.count - 1) * gap + gap <= block.middle - half + 1e-9) continue;

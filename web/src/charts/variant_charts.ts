@@ -13,8 +13,12 @@ export function variantCharts(scene: SceneData): ChartModel[] {
   const asked = scene.charts.filter((spec) => !spec.map);
   const own = scene.charts.length > 0 ? needlesFirst(asked, scene.variants) : defaultSpecs(scene.variants, null);
   const further = furtherInstruments(scene.variants);
-  const needles = further.filter(({ kind }) => kind === "needle").flatMap(({ name }) => defaultSpecs(scene.variants, name));
-  const others = further.filter(({ kind }) => kind !== "needle").flatMap(({ name }) => defaultSpecs(scene.variants, name));
+  const needles = further
+    .filter(({ kind }) => kind === "needle")
+    .flatMap(({ name }) => defaultSpecs(scene.variants, name));
+  const others = further
+    .filter(({ kind }) => kind !== "needle")
+    .flatMap(({ name }) => defaultSpecs(scene.variants, name));
   const specs = [...needles, ...own, ...(scene.charts.length > 0 ? [] : others)];
   const names = [...new Set(specs.flatMap((spec) => (spec.lines ?? []).map((line) => line.label)))];
   return specs.map((spec) => chartOf(spec, scene, names)).filter((model) => model.lines.length > 0);
@@ -36,9 +40,7 @@ function needlesFirst(specs: readonly ChartSpec[], variants: readonly VariantDat
 }
 
 const tableOf = (variant: VariantData, instrument: string | null): Columns | null =>
-  instrument === null
-    ? variant.forces
-    : (variant.instruments.find(({ name }) => name === instrument)?.forces ?? null);
+  instrument === null ? variant.forces : (variant.instruments.find(({ name }) => name === instrument)?.forces ?? null);
 
 /** @param names  of lines that belong to no variant, in all charts: one of a name looks alike in all of them */
 function chartOf(spec: ChartSpec, scene: SceneData, names: readonly string[]): ChartModel {
@@ -106,11 +108,13 @@ function chartOf(spec: ChartSpec, scene: SceneData, names: readonly string[]): C
     xLabel: axisLabel(spec.x.label),
     yLabel: axisLabel(spec.y.label),
     lines,
-    events: scene.variants.flatMap((variant) => marksOf(variant, spec)).map((mark) => ({
-      ...mark,
-      x: decades(logX, mark.x),
-      y: mark.y === null ? null : decades(logY, mark.y),
-    })),
+    events: scene.variants
+      .flatMap((variant) => marksOf(variant, spec))
+      .map((mark) => ({
+        ...mark,
+        x: decades(logX, mark.x),
+        y: mark.y === null ? null : decades(logY, mark.y),
+      })),
     note: "",
     logX,
     logY,

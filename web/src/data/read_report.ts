@@ -7,6 +7,7 @@ import type {
   CheckData,
   Columns,
   EventData,
+  FieldData,
   FrameData,
   InstrumentForm,
   InstrumentPlace,
@@ -17,6 +18,7 @@ import type {
   SurfaceData,
   TableData,
   VariantData,
+  VesselForm,
 } from "../report_data.ts";
 import { readLaws } from "./read_law.ts";
 import { type Raw, finite, isRecord, list, numberOrNaN, record, text } from "./raw.ts";
@@ -123,7 +125,9 @@ function readSurface(raw: Raw): SurfaceData | null {
     rest: text(raw["rest"]),
     fixed: text(raw["fixed"]),
     instruments: list(raw["instruments"]).map((form) => readForm(record(form))),
+    ...(isRecord(raw["container"]) ? { container: readVessel(raw["container"]) } : {}),
     tissue: text(raw["tissue"]),
+    ...(raw["tets"] ? { tets: text(raw["tets"]) } : {}),
     regions: list(raw["regions"])
       .map(record)
       .map((region) => ({ name: text(region["name"]), triangles: text(region["triangles"]) })),
@@ -144,11 +148,33 @@ function readForm(raw: Raw): InstrumentForm {
   };
 }
 
+function readVessel(raw: Raw): VesselForm {
+  const numbers = (value: unknown) => list(value).map((one) => finite(one, 0));
+  return {
+    kind: raw["kind"] === "box" ? "box" : "cylinder",
+    radius_m: finite(raw["radius_m"], 0),
+    width_m: finite(raw["width_m"], 0),
+    length_m: finite(raw["length_m"], 0),
+    height_m: finite(raw["height_m"], 0),
+    origin: numbers(raw["origin"]),
+    axes: numbers(raw["axes"]),
+  };
+}
+
 function readPlace(raw: Raw): InstrumentPlace {
   return {
     points: list(raw["points"]).map((value) => finite(value, 0)),
     axes: list(raw["axes"]).map((value) => finite(value, 0)),
   };
+}
+
+function readFields(raw: Raw): Record<string, FieldData> {
+  const fields: Record<string, FieldData> = {};
+  for (const [name, value] of Object.entries(raw)) {
+    const { low, high, values } = record(value);
+    fields[name] = { low: finite(low, 0), high: finite(high, 0), values: text(values) };
+  }
+  return fields;
 }
 
 function readFrame(raw: Raw): FrameData {
@@ -159,7 +185,9 @@ function readFrame(raw: Raw): FrameData {
     intensity_max: finite(raw["intensity_max"], 0),
     intensity: text(raw["intensity"]),
     instruments: list(raw["instruments"]).map((place) => readPlace(record(place))),
+    fields: readFields(record(raw["fields"])),
     ...(raw["triangles"] ? { triangles: text(raw["triangles"]) } : {}),
+    ...(raw["tets"] ? { tets: text(raw["tets"]) } : {}),
     ...(raw["kinds"] ? { kinds: text(raw["kinds"]) } : {}),
     ...(Array.isArray(raw["regions"]) ? { regions: raw["regions"].map(text) } : {}),
   };

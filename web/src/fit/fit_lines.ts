@@ -68,7 +68,8 @@ function certaintyWords(fit: FitData, names: readonly string[]): string {
   if (open.length > 0) parts.push(`the curves do not determine ${listed(open)}`);
   if (weak.length > 0) parts.push(`${listed(weak)} ${weak.length === 1 ? "is" : "are"} known only roughly`);
   if (bound.length > 0) parts.push(`${listed(bound)} ${bound.length === 1 ? "lies" : "lie"} at a bound: widen it`);
-  if (parts.length === 0) parts.push(fit.parameters.length === 1 ? "the curves determine it" : "the curves determine all of them");
+  if (parts.length === 0)
+    parts.push(fit.parameters.length === 1 ? "the curves determine it" : "the curves determine all of them");
   const pair = closestPairs(correlationOf(fit), 1)[0];
   if (pair && Math.abs(pair.r) >= STRONG)
     parts.push(`${names[pair.a]!} and ${names[pair.b]!} can make up for each other (correlation ${signed(pair.r)})`);

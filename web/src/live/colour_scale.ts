@@ -1,7 +1,8 @@
 // colour_scale.ts — the scale of what colours the streamed body: its range, and the bar that tells it.
 import { ColourBar } from "../mesh3d/colour_bar.ts";
 import { TISSUE } from "../mesh3d/look.ts";
-import { type Colouring, ColourRange, unitOf } from "./colouring.ts";
+import { type Colouring, unitOf } from "../mesh3d/fields.ts";
+import { ColourRange } from "./colouring.ts";
 import type { LiveSurface } from "./live_surface.ts";
 
 export class ColourScale {

@@ -1,4 +1,4 @@
-// cut_panel.ts — what a drag does: pull, cut or turn; while it cuts, how deep, and what has been cut.
+// cut_panel.ts — what a drag does: pull, grasp, place a tool, cut or turn; while it cuts, how deep, and what has been cut.
 import { formatSignificant } from "../format/number.ts";
 import { h } from "../page/dom.ts";
 import type { DragMode, LiveView } from "./live_view.ts";
@@ -7,6 +7,18 @@ import { Slider } from "./slider.ts";
 
 const MODES: readonly { mode: DragMode; label: string; key: string; title: string }[] = [
   { mode: "pull", label: "Pull", key: "p", title: "A drag on tissue pulls it; outside the body it turns the view (P)" },
+  {
+    mode: "grasp",
+    label: "Grasp",
+    key: "b",
+    title: "A patch that is picked is bonded to the pointer until it is let go (B)",
+  },
+  {
+    mode: "place",
+    label: "Place tool",
+    key: "o",
+    title: "The chosen tool goes before the point of the surface that is picked (O)",
+  },
   { mode: "cut", label: "Cut tissue", key: "k", title: "A stroke over the body cuts it (K)" },
   { mode: "turn", label: "Turn", key: "t", title: "A drag turns the view (T)" },
 ];
@@ -39,6 +51,8 @@ export class CutPanel {
   start(hello: Hello): void {
     const input = this.inputs.get("cut")!;
     input.disabled = hello.why_no_cut !== "" || !this.view.cutTool;
+    for (const mode of ["pull", "grasp"] as const) this.inputs.get(mode)!.disabled = !hello.can_grab;
+    this.inputs.get("place")!.parentElement!.hidden = !hello.tools.some((tool) => tool.instrument);
     if (hello.why_no_cut) input.parentElement!.title = `This body cannot be cut: ${hello.why_no_cut}`;
   }
 

@@ -2,13 +2,16 @@
 import type * as THREE from "three";
 import { formatInteger, formatSignificant } from "../format/number.ts";
 import { button, download, h, select } from "../page/dom.ts";
+import { forceText } from "../mesh3d/force_arrow.ts";
 import { toggleTheme } from "../page/theme.ts";
 import { Connection, type Status } from "./connection.ts";
 import { ForcePlot } from "./force_plot.ts";
 import { History } from "./history.ts";
 import { CutPanel } from "./cut_panel.ts";
 import { LiveView } from "./live_view.ts";
+import { paceText } from "./pace.ts";
 import { ReplayControls } from "./replay_controls.ts";
+import { legsTo, Placing, startOf } from "./placing.ts";
 import type {
   Command,
   Hello,
@@ -78,7 +81,8 @@ export class LivePage {
     });
     this.view = new LiveView(() => this.hello, {
       mayAct: () => this.role.drives,
-      grab: (vertex, at) => this.send({ kind: "grab", index: vertex, values: xyz(at) }),
+      grab: (vertex, at, bonded) => this.send({ kind: "grab", tool: bonded ? 1 : 0, index: vertex, values: xyz(at) }),
+      place: (at) => this.placeAt(xyz(at)),
       drag: (to) => this.sendSoon({ kind: "drag", values: xyz(to) }),
       cut: (begins, from, to) => this.send({ kind: "cut", index: begins ? 1 : 0, values: [...xyz(from), ...xyz(to)] }),
       letGo: () => ((this.waiting = null), this.send({ kind: "letGo" })),
@@ -107,6 +111,7 @@ export class LivePage {
 
   private body(): HTMLElement {
     this.view.onColour = ({ field }) => this.send({ kind: "colour", index: field });
+    this.view.onInside = (wanted) => this.send({ kind: "inside", index: wanted ? 1 : 0 });
     const tools = h(
       "div",
       { class: "live-view-tools" },
@@ -178,6 +183,7 @@ export class LivePage {
     this.view.offer(hello.has_stress);
     const { field } = this.view.colours;
     if (field !== 1) this.send({ kind: "colour", index: field }); // a new line begins with s
+    this.view.askAgain();
     if (again) return; // the line was cut: everything here is as it was
     this.history = new History(hello.tools.length);
     document.title = `${hello.title} – Glisson`;
@@ -264,7 +270,9 @@ export class LivePage {
     const play = button("Play the scene’s motion", "Back to rest, then play the scene’s motion of the tools", () =>
       this.send({ kind: "play" }),
     );
-    const undo = button("Undo cut", "Back to before the last stroke of the blade (Ctrl+Z)", () => this.send({ kind: "undo" }));
+    const undo = button("Undo cut", "Back to before the last stroke of the blade (Ctrl+Z)", () =>
+      this.send({ kind: "undo" }),
+    );
     undo.hidden = hello.why_no_cut !== "";
     play.hidden = !hello.tools.some((tool) => tool.can_play);
     this.run.replaceChildren(h("fieldset", { class: "live-buttons" }, this.pauseButton, step, reset, undo, play));
@@ -311,13 +319,52 @@ export class LivePage {
         sliders.speed.element,
         h("details", {}, h("summary", {}, "Move it freely"), sliders.side.element, sliders.third.element),
       );
-      field.addEventListener("focusin", () => (this.tool = i));
-      field.addEventListener("pointerdown", () => (this.tool = i));
       return field;
     });
-    this.tools.replaceChildren(...sets);
+    this.toolFields = sets;
+    const names = hello.tools.map((tool, i) => ({ value: String(i), label: tool.name }));
+    this.toolSelect = names.length > 1 ? select("Tool", names, "0", (i) => this.chooseTool(Number(i))) : null;
+    this.tools.replaceChildren(...(this.toolSelect ? [this.toolSelect] : []), ...sets);
+    this.chooseTool(Math.min(this.tool, Math.max(0, sets.length - 1)));
     this.tools.hidden = sets.length === 0;
     this.plots.depth.element.hidden = this.plots.time.element.hidden = sets.length === 0;
+  }
+
+  private toolFields: HTMLElement[] = [];
+  private toolSelect: HTMLElement | null = null;
+
+  /** The tool that sliders, numbers, plots and placing mean. */
+  private chooseTool(tool: number): void {
+    if (tool !== this.tool) this.placing.stop();
+    this.tool = tool;
+    this.toolFields.forEach((field, i) => (field.hidden = i !== tool));
+    const list = this.toolSelect?.querySelector("select");
+    if (list) list.value = String(tool);
+  }
+
+  private ownSpeed = 0.01; // of the tool that is being placed, before and after [m/s]
+  private readonly placing = new Placing(
+    ({ depth, aside }) => {
+      const sliders = this.sliders[this.tool];
+      [depth, ...aside].forEach((metres, k) => [sliders?.depth, sliders?.side, sliders?.third][k]?.set(1000 * metres));
+      this.sendSoon({ kind: "place", tool: this.tool, values: [depth, ...aside] });
+    },
+    (speed) => {
+      this.send({ kind: "speed", tool: this.tool, values: [Math.max(this.ownSpeed, speed ?? 0)] });
+    },
+  );
+
+  /** The chosen tool, where it is an instrument, goes before a point of the surface. */
+  private placeAt(point: [number, number, number]): void {
+    const tools = this.hello?.tools ?? [];
+    if (!tools[this.tool]?.instrument) this.chooseTool(tools.findIndex(({ instrument }) => instrument));
+    const info = tools[this.tool];
+    const state = this.frame?.tools[this.tool];
+    const start = info && state ? startOf(info, state) : null;
+    if (!info || !state || !start) return;
+    if (!this.placing.busy) this.ownSpeed = (this.sliders[this.tool]?.speed.value ?? 10) / 1000;
+    const before = this.view.reachAlong(start, info.direction);
+    this.placing.begin(legsTo(point, info, state, before, this.view.size));
   }
 
   private number(name: string, value: string, unit: string): void {
@@ -339,7 +386,10 @@ export class LivePage {
       const force = tool.force.reduce((sum, f, i) => sum + f * direction[i]!, 0);
       this.element.dataset["force"] = String(force);
       this.element.dataset["depth"] = String(tool.depth);
-      this.number("Force", fixed(force, 3), "N");
+      const size = Math.hypot(...tool.force);
+      this.number("Force", forceText(size), "N"); // as beside the arrow
+      this.number("Along the tool", fixed(force, 3), "N");
+      this.placing.follow(tool);
       this.number("Depth", fixed(1000 * tool.depth, 2), "mm");
     }
     this.number("Time", fixed(frame.time, 2), "s");
@@ -347,19 +397,18 @@ export class LivePage {
     this.element.dataset["time"] = String(frame.time);
     if (this.replay) {
       this.replay.follow(frame);
-      return this.number("Pace", frame.paused ? "paused" : `${formatSignificant(frame.realtimeFactor, 3)} ×`, "");
+      return this.number("Pace", frame.paused ? "paused" : paceText(frame.realtimeFactor), "");
     }
-    this.number("Pull", fixed(Math.hypot(...frame.grabForce), 3), "N");
+    this.number("Pull", forceText(Math.hypot(...frame.grabForce)), "N");
     const pace = frame.building
       ? "making the body"
       : frame.stopped
         ? "stopped"
         : frame.paused
           ? "paused"
-          : `${fixed(frame.realtimeFactor, 2)} ×`;
+          : paceText(frame.realtimeFactor);
     this.number("Pace", pace, "");
     this.number("Computing", `${formatInteger(frame.p50)} / ${formatInteger(frame.p99)}`, "µs");
-    this.number("Dropped", formatInteger(frame.dropped), "frames");
     this.number("Latency", this.connection.latency === null ? "–" : fixed(this.connection.latency, 0), "ms");
     if (this.pauseButton) this.pauseButton.textContent = frame.paused ? "Go on" : "Pause";
     frame.tools.forEach((state, i) => this.showPlace(this.sliders[i], state));
@@ -384,13 +433,15 @@ export class LivePage {
     const { time, depth, force } = this.history;
     if (document.hidden || !this.hello || this.hello.tools.length === 0) return;
     const mark = this.replay && this.frame ? this.history.indexAt(this.frame.time) : -1;
-    this.plots.depth.show(depth[this.tool]!, force[this.tool]!, 0, mark);
+    const path = this.replay ? { depth: depth[this.tool]!, force: force[this.tool]! } : this.history.paths[this.tool]!;
+    this.plots.depth.show(path.depth, path.force, 0, mark);
     this.plots.time.show(time, force[this.tool]!, this.replay ? 0 : Math.max(0, time.length - SEEN), mark);
   }
 
   // ---- what goes out
 
   send(command: Command): void {
+    if (command.kind === "reset" || command.kind === "play") this.placing.stop();
     if (command.kind === "reset")
       this.sliders.forEach(({ depth, side, third }) => [depth, side, third].forEach((s) => s.set(0)));
     this.connection.send(command);
@@ -407,7 +458,8 @@ export class LivePage {
   }
 
   private push(tool: number, depth: number): void {
-    this.tool = tool;
+    this.chooseTool(tool);
+    this.placing.stop();
     this.sliders[tool]?.depth.set(1000 * depth);
     this.sendPlace(tool);
   }

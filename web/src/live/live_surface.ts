@@ -1,7 +1,8 @@
 // live_surface.ts — the streamed surface as the 3D component wants it: always one frame, the newest.
 import type { Frame, SurfaceMotion } from "../mesh3d/timeline.ts";
-import type { InstrumentForm } from "../report_data.ts";
-import { type Colouring, valuesOf } from "./colouring.ts";
+import type { InstrumentForm, VesselForm } from "../report_data.ts";
+import type { Colouring } from "../mesh3d/fields.ts";
+import { valuesOf } from "./colouring.ts";
 import type { Keyframe, LiveFrame } from "./protocol.ts";
 
 export class LiveSurface implements SurfaceMotion {
@@ -22,6 +23,7 @@ export class LiveSurface implements SurfaceMotion {
     keyframe: Keyframe,
     readonly instruments: readonly InstrumentForm[],
     private readonly sets: number,
+    readonly container: VesselForm | null = null,
   ) {
     this.tissue = keyframe.tissue;
     this.regions = keyframe.regions;
@@ -38,6 +40,7 @@ export class LiveSurface implements SurfaceMotion {
       intensity: new Float32Array(this.vertices),
       triangles: this.triangles,
       regions: this.regionTriangles,
+      tets: keyframe.tets,
       kinds: this.kinds,
       instruments: [],
     };
@@ -82,6 +85,10 @@ export class LiveSurface implements SurfaceMotion {
 
   kindsAt(): Uint8Array | null {
     return this.kinds;
+  }
+
+  tetsAt(): Uint32Array | null {
+    return this.newest.tets;
   }
 
   regionsAt(): readonly Uint32Array[] {

@@ -4,6 +4,7 @@ import * as THREE from "three";
 import { strokeOf } from "../charts/line_style.ts";
 import { type ClipBody, clipKey, clipPlane, firstSeen, rememberClip, rememberedClip } from "../mesh3d/clip.ts";
 import { ClipControls } from "../mesh3d/clip_controls.ts";
+import { AS_TISSUE, type Colouring, COLOURINGS, colouringOf } from "../mesh3d/fields.ts";
 import { fineIsFast, hopeForFine, Pace } from "../mesh3d/drawing_speed.ts";
 import { lookKey, rememberedLook, rememberLook, TISSUE } from "../mesh3d/look.ts";
 import { LookControls } from "../mesh3d/look_controls.ts";
@@ -15,7 +16,6 @@ import { drawsInSoftware, webglContext } from "../mesh3d/webgl.ts";
 import { h } from "../page/dom.ts";
 import { currentTheme, onTheme, themeColour } from "../page/theme.ts";
 import { ColourScale } from "./colour_scale.ts";
-import { AS_TISSUE, type Colouring, COLOURINGS, colouringOf } from "./colouring.ts";
 import { CutTool } from "./cut_tool.ts";
 import { ForceShown } from "./force_shown.ts";
 import { LiveSurface } from "./live_surface.ts";
@@ -26,7 +26,10 @@ const EASINGS = [0.7, 0.5]; // shares of the pixels in each direction
 
 export interface Hands {
   mayAct(): boolean;
-  grab(vertex: number, at: THREE.Vector3): void;
+  /** @param bonded  to the pointer, else by springs */
+  grab(vertex: number, at: THREE.Vector3, bonded: boolean): void;
+  /** Puts the chosen tool before a point of the surface. */
+  place(at: THREE.Vector3): void;
   drag(to: THREE.Vector3): void;
   letGo(): void;
   push(tool: number, depth: number): void;
@@ -34,7 +37,7 @@ export interface Hands {
 }
 
 /** What a drag does. */
-export type DragMode = "pull" | "cut" | "turn";
+export type DragMode = "pull" | "grasp" | "place" | "cut" | "turn";
 
 type Drag =
   | { what: "tissue"; vertex: number; plane: THREE.Plane; offset: THREE.Vector3 }
@@ -113,7 +116,10 @@ export class LiveView {
     this.thread.visible = this.thread.frustumCulled = false;
     this.thread.renderOrder = 10;
     this.stage.scene.add(this.thread);
-    this.stage.beforeDrawing = () => this.model?.cutOpen(this.plane);
+    this.stage.beforeDrawing = () => {
+      this.model?.cutOpen(this.plane);
+      if (this.stage) this.force.arrow.keepInside(this.stage);
+    };
     this.stage.afterDrawing = () => this.annotate();
     this.stage.scene.add(this.force.arrow.group);
     this.cutTool = new CutTool(this.stage, this.canvas, this.hands, (caster) => this.seenAt(caster));
@@ -143,7 +149,7 @@ export class LiveView {
       this.model.dispose();
     }
     const sets = hello.tools.filter((tool) => !tool.instrument).length;
-    this.surface = new LiveSurface(keyframe, hello.instruments, sets);
+    this.surface = new LiveSurface(keyframe, hello.instruments, sets, hello.container ?? null);
     this.model = new SurfaceModel(this.surface, this.material, this.fine, this.fitted ? "again" : "first");
     this.keyframe = keyframe.number;
     this.stage.scene.add(this.model.group);
@@ -193,7 +199,7 @@ export class LiveView {
       fine: this.fine,
     });
     this.model.show({ edges: this.edges, ghost: false, marks: true, held: this.model.heldCount <= MANY_MARKS });
-    this.model.update(0, 1, 1);
+    this.model.update(0, 1, { low: 0, high: 1 });
     const held = frame.grabbing && this.dragged?.what === "tissue" ? this.place(this.dragged.vertex) : null;
     this.force.show(frame, this.model, held);
     this.drawThread();
@@ -225,7 +231,28 @@ export class LiveView {
     return this.model && this.stage ? clipPlane(this.clip, this.model.clipBody, this.stage.forward) : null;
   }
 
+  /** Whether the whole body is needed: a field on the face of a cut. */
+  get wantsInside(): boolean {
+    return this.clip.on && this.scale.colouring.name !== TISSUE;
+  }
+
+  onInside: (wanted: boolean) => void = () => {};
+  private told = false;
+
+  private askInside(): void {
+    if (this.told === this.wantsInside) return;
+    this.told = this.wantsInside;
+    this.onInside(this.told);
+  }
+
+  /** The line is new: what was asked for is not known there. */
+  askAgain(): void {
+    this.told = false;
+    this.askInside();
+  }
+
   private cutChanged(): void {
+    this.askInside();
     rememberClip("live", this.clip);
     this.stage?.invalidate();
   }
@@ -238,6 +265,7 @@ export class LiveView {
       this.scale.colouring = colouring;
       this.onColour(colouring);
     }
+    this.askInside();
     if (this.newest) this.takeFrame(this.newest); // a body that is paused is drawn anew, too
   }
 
@@ -248,8 +276,10 @@ export class LiveView {
 
   /** Tells which fields there are. */
   offer(hasStress: boolean): void {
-    this.look.colour.querySelector<HTMLOptionElement>("[value=pressure]")!.hidden = !hasStress;
-    if (hasStress || this.scale.colouring.name !== "pressure") return;
+    const fields = ["pressure", "von_mises", "contact_pressure"];
+    for (const name of fields)
+      this.look.colour.querySelector<HTMLOptionElement>(`[value=${name}]`)!.hidden = !hasStress;
+    if (hasStress || !fields.includes(this.scale.colouring.name)) return;
     this.lookSettings.colour = AS_TISSUE.name;
     this.lookChanged();
   }
@@ -290,13 +320,45 @@ export class LiveView {
   private down(event: PointerEvent): void {
     if (!this.stage || !this.model || event.button !== 0 || !event.isPrimary || event.target !== this.canvas) return;
     if (this.dragMode === "cut" && this.hands.mayAct()) return this.beginCut(event);
+    if (this.dragMode === "place" && this.hands.mayAct() && this.pick(event)) return;
     this.dragged = this.hands.mayAct() ? this.take(event) : null;
     this.stage.turning = this.dragged === null;
     if (!this.dragged) return;
     this.canvas.focus({ preventScroll: true });
     this.canvas.setPointerCapture(event.pointerId);
     if (this.dragged.what !== "tissue") return;
-    this.hands.grab(this.dragged.vertex, this.place(this.dragged.vertex));
+    this.hands.grab(this.dragged.vertex, this.place(this.dragged.vertex), this.dragMode === "grasp");
+  }
+
+  /** The point of the surface under the pointer is where the tool is to be; whether there is one. */
+  private pick(event: PointerEvent): boolean {
+    const { stage, model } = this;
+    if (!stage || !model) return false;
+    const caster = stage.rayThrough(event.clientX, event.clientY);
+    model.skin.geometry.computeBoundingSphere();
+    const { hit } = firstSeen(caster.intersectObject(model.skin, false), this.plane, caster.ray);
+    if (!hit) return false;
+    this.hands.place(hit.point);
+    return true;
+  }
+
+  /** How far the body reaches against a direction from a point [m]: less is before all of it. */
+  reachAlong(from: readonly number[], direction: readonly number[]): number {
+    const position = this.model?.skin.geometry.getAttribute("position") as THREE.BufferAttribute | undefined;
+    let least = Infinity;
+    for (let i = 0; position && i < position.count; i++) {
+      const at = [position.getX(i), position.getY(i), position.getZ(i)];
+      least = Math.min(
+        least,
+        at.reduce((sum, x, k) => sum + (x - from[k]!) * direction[k]!, 0),
+      );
+    }
+    return least;
+  }
+
+  /** Diagonal of the body [m]; 0 before it has come. */
+  get size(): number {
+    return this.model?.diagonal ?? 0;
   }
 
   /** How far from the eye the body is seen in a line of sight; null: beside it. */
@@ -334,7 +396,7 @@ export class LiveView {
     const corners = [skin.face.a, skin.face.b, skin.face.c];
     if (sets > 0 && corners.some((corner) => this.surface!.fixed[corner] === DRIVEN))
       return this.takeTool(0, skin.point, caster.ray);
-    if (this.dragMode !== "pull" || !hello.can_grab) return null;
+    if ((this.dragMode !== "pull" && this.dragMode !== "grasp") || !hello.can_grab) return null;
     const far = (corner: number) => this.place(corner).distanceTo(skin.point);
     const vertex = corners.reduce((best, corner) => (far(corner) < far(best) ? corner : best));
     const plane = new THREE.Plane().setFromNormalAndCoplanarPoint(stage.forward, skin.point);

@@ -1,5 +1,5 @@
 // protocol.ts — the bytes between page and program: docs/view.md has them as a table, apps/view/ the other end.
-import type { InstrumentForm } from "../report_data.ts";
+import type { InstrumentForm, VesselForm } from "../report_data.ts";
 
 export interface ToolInfo {
   name: string;
@@ -46,6 +46,7 @@ export interface Hello {
   tools: ToolInfo[];
   parameters: ParameterInfo[];
   instruments: InstrumentForm[];
+  container?: VesselForm | null;
   recorded: Recorded | null; // a run that is played, not simulated
   can_record: boolean;
 }
@@ -92,6 +93,7 @@ export interface Keyframe {
   kinds: Uint8Array | null; // of each triangle: 0 skin, 1 a face that was cut, 2 skin whose capsule is torn
   tissue: string; // name of what most of the body is; may be empty
   regions: { name: string; triangles: Uint32Array }[]; // closed surfaces of what else there is
+  tets: Uint32Array | null; // of the whole body, whose other vertices come last; null: its surfaces alone were sent
 }
 
 export interface ToolState {
@@ -163,9 +165,13 @@ function decodeKeyframe(view: DataView): Keyframe {
   };
 }
 
-/** Kinds of the triangles, names, and surfaces of inner regions; a program that sends none has neither. */
-function decodeInside(view: DataView, from: number, triangles: number): Pick<Keyframe, "kinds" | "tissue" | "regions"> {
-  if (view.byteLength < from + triangles + 4) return { kinds: null, tissue: "", regions: [] };
+/** Kinds of the triangles, names, surfaces of inner regions, and tets where they were asked for; an old program sends none. */
+function decodeInside(
+  view: DataView,
+  from: number,
+  triangles: number,
+): Pick<Keyframe, "kinds" | "tissue" | "regions" | "tets"> {
+  if (view.byteLength < from + triangles + 4) return { kinds: null, tissue: "", regions: [], tets: null };
   const kinds = new Uint8Array(view.buffer as ArrayBuffer, from, triangles);
   let at = aligned(from + triangles);
   const words = (): string => {
@@ -184,7 +190,10 @@ function decodeInside(view: DataView, from: number, triangles: number): Pick<Key
     regions.push({ name, triangles: new Uint32Array(view.buffer.slice(at + 4, at + 4 + 4 * corners) as ArrayBuffer) });
     at += 4 + 4 * corners;
   }
-  return { kinds: kinds.some((kind) => kind !== 0) ? kinds : null, tissue, regions };
+  const cells = at + 4 <= view.byteLength ? view.getUint32(at, true) : 0;
+  if (cells > 0 && at + 4 + 16 * cells > view.byteLength) throw new RangeError("tets that were cut short");
+  const tets = cells > 0 ? new Uint32Array(view.buffer.slice(at + 4, at + 4 + 16 * cells) as ArrayBuffer) : null;
+  return { kinds: kinds.some((kind) => kind !== 0) ? kinds : null, tissue, regions, tets };
 }
 
 const aligned = (at: number): number => 4 * Math.ceil(at / 4);
@@ -261,13 +270,14 @@ function decodeSamples(view: DataView): Samples {
 export type Command =
   | { kind: "place"; tool: number; values: [number, number, number] } // depth, aside [m]
   | { kind: "speed"; tool: number; values: [number] } // [m/s]
-  | { kind: "grab"; index: number; values: [number, number, number] } // surface vertex, where to [m]
+  | { kind: "grab"; tool: 0 | 1; index: number; values: [number, number, number] } // by springs or bonded; surface vertex, where to [m]
   | { kind: "drag"; values: [number, number, number] }
   | { kind: "pause"; index: 0 | 1 }
   | { kind: "parameter"; index: number; values: [number] }
   | { kind: "cut"; index: 0 | 1; values: number[] } // 1 begins; the edge, from where to where [m]
   | { kind: "colour"; index: number } // field
   | { kind: "visible"; index: 0 | 1 } // of this page
+  | { kind: "inside"; index: 0 | 1 } // whether the whole body is sent
   | { kind: "seek"; values: [number] } // of a recorded run, to this time [s]
   | { kind: "rate"; values: [number] }
   | { kind: "letGo" | "step" | "reset" | "undo" | "play" | "take" | "give" };
@@ -291,6 +301,7 @@ const KINDS: Record<Command["kind"], number> = {
   rate: 16,
   visible: 17,
   undo: 18,
+  inside: 19,
 };
 
 /** The bytes of a command. */

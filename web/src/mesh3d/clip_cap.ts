@@ -1,5 +1,5 @@
 // clip_cap.ts — closes a body that is cut open: a face in the plane, where a line of sight is inside the body. It is raw
-// tissue; where a field colours the body it is hatched, since the field is known on the surface only.
+// tissue; where a field colours the body and is known on its surface only it is hatched (else field_cap.ts draws the face).
 //
 //   stencil of a pixel = backs − fronts of the skin that stays, along the line of sight
 //   no skin between the plane and the inside: what is entered through the plane is left through a back, so it is not 0

@@ -10,6 +10,11 @@ const SHORTEST = 0.02; // of the largest force: less is no arrow
 const THICK = 0.0055; // radius of the shaft, of the body's size
 const HEAD = 0.05; // length of the head, of the body's size
 const GAP = 6; // CSS pixels that a label keeps from others
+const EDGE = 16; // CSS pixels that an arrow keeps from the edge of the picture
+const SHORTENED = 0.25; // of its length that an arrow keeps at least
+
+/** A force in newtons as it is written beside the arrow and in panels, so that both agree. */
+export const forceText = (force: number): string => formatSignificant(force, 3);
 
 export interface ForceNow {
   at: THREE.Vector3; // where it acts
@@ -25,6 +30,9 @@ export class ForceArrow {
   private readonly head = new THREE.Mesh(new THREE.ConeGeometry(1, 1, 24).translate(0, -0.5, 0), this.material);
   private readonly tail = new THREE.Vector3(); // its free end …
   private readonly tip = new THREE.Vector3(); // … and where it touches the body
+  private presses = true;
+  private headLength = 0;
+  private thickness = 0;
 
   constructor() {
     this.group.add(this.shaft, this.head);
@@ -50,14 +58,55 @@ export class ForceArrow {
     const presses = middle.clone().sub(now.at).dot(along) > 0;
     const from = presses ? now.at.clone().addScaledVector(along, -length) : now.at.clone();
     const turn = new THREE.Quaternion().setFromUnitVectors(new THREE.Vector3(0, 1, 0), along);
-    this.group.position.copy(from);
     this.group.quaternion.copy(turn);
-    this.shaft.scale.set(THICK * size, length - 0.9 * head, THICK * size);
-    this.head.scale.set(0.34 * head, head, 0.34 * head);
-    this.head.position.set(0, length, 0);
+    this.presses = presses;
+    this.headLength = head;
+    this.thickness = THICK * size;
     this.tip.copy(now.at);
     this.tail.copy(presses ? from : from.addScaledVector(along, length));
-    this.label.textContent = `${formatSignificant(strength, 3)}\u00a0N`;
+    this.lay();
+    this.label.textContent = `${forceText(strength)}\u00a0N`;
+  }
+
+  /** To be called before a drawing: an arrow whose free end would lie beside the picture is drawn shorter, and where the place that it
+   * acts on has left the picture, at its edge. */
+  keepInside(stage: Stage): void {
+    if (!this.group.visible) return;
+    const { width, height } = stage.size;
+    const within = (p: { x: number; y: number }) =>
+      p.x >= EDGE && p.x <= width - EDGE && p.y >= EDGE && p.y <= height - EDGE;
+    const tip = stage.toScreen(this.tip);
+    if (!within(tip)) {
+      const to = {
+        x: Math.min(width - EDGE, Math.max(EDGE, tip.x)),
+        y: Math.min(height - EDGE, Math.max(EDGE, tip.y)),
+      };
+      const shift = stage.fromScreen(to, this.tip).sub(this.tip);
+      this.tip.add(shift);
+      this.tail.add(shift);
+    }
+    let [inside, outside] = [0, 1];
+    const at = (share: number) => this.tip.clone().lerp(this.tail, share);
+    if (!within(stage.toScreen(this.tail))) {
+      for (let i = 0; i < 12; i++) {
+        const middle = (inside + outside) / 2;
+        if (within(stage.toScreen(at(middle)))) inside = middle;
+        else outside = middle;
+      }
+      this.tail.copy(at(Math.max(SHORTENED, inside)));
+    }
+    this.lay();
+  }
+
+  /** Shaft and head between tail and tip, as far apart as they are. */
+  private lay(): void {
+    const [from, to] = this.presses ? [this.tail, this.tip] : [this.tip, this.tail];
+    const length = from.distanceTo(to);
+    const head = Math.min(this.headLength, 0.9 * length);
+    this.group.position.copy(from);
+    this.shaft.scale.set(this.thickness, length - 0.9 * head, this.thickness);
+    this.head.scale.set(0.34 * head, head, 0.34 * head);
+    this.head.position.set(0, length, 0);
   }
 
   /** Puts the label beside the arrow's free end, off everything else that is written there; where there is no room, none. */

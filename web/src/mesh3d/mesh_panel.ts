@@ -10,6 +10,7 @@ import { ClipControls } from "./clip_controls.ts";
 import { ColourBar } from "./colour_bar.ts";
 import { type MeshVariant, MeshView, type RangeChoice, type ViewSettings } from "./mesh_view.ts";
 import { Player, speedsFor } from "./player.ts";
+import { type Colouring, COLOURINGS, colouringOf, unitOf } from "./fields.ts";
 import { composePicture } from "./screenshot.ts";
 import { interpolate } from "./interpolate.ts";
 import { lookKey, rememberedLook, rememberLook, TISSUE } from "./look.ts";
@@ -19,7 +20,8 @@ import { webglContext } from "./webgl.ts";
 const SLIDER_STEPS = 600;
 /** More marks than this would hide the body: they are off until asked for. */
 const MANY_MARKS = 40;
-const STRAIN = "intensity";
+/** What F goes to. */
+const FIRST_FIELD = "intensity";
 const EXAGGERATIONS = [1, 2, 5, 10, 20, 50];
 
 /** Variants of a scene that have a surface to show. */
@@ -59,6 +61,7 @@ export class MeshPanel {
     first: string,
   ) {
     const shown = variants.find((variant) => variant.name === first) ?? variants[variants.length - 1]!;
+    const fields = fieldsOf(variants);
     this.settings = {
       variant: shown.name,
       exaggeration: 1,
@@ -67,7 +70,7 @@ export class MeshPanel {
       ghost: false,
       marks: true,
       arrow: true,
-      look: rememberedLook(scene.name, [TISSUE, STRAIN]),
+      look: rememberedLook(scene.name, [TISSUE, ...fields.map(({ name }) => name)]),
       clip: rememberedClip(scene.name, {
         on: shown.surface.instruments.some((form) => form.kind === "needle"),
         axis: "y",
@@ -80,8 +83,10 @@ export class MeshPanel {
       () => this.view?.clipBody ?? null,
       () => this.cutChanged(),
     );
-    this.look = new LookControls(this.settings.look, [{ value: STRAIN, label: "Equivalent shear strain s" }], () =>
-      this.lookChanged(),
+    this.look = new LookControls(
+      this.settings.look,
+      fields.map(({ name, label }) => ({ value: name, label })),
+      () => this.lookChanged(),
     );
     const [start, end] = spanOf(shown);
     this.player = new Player(
@@ -194,17 +199,28 @@ export class MeshPanel {
     }
     if (this.player.playing && this.view?.tooSlow(performance.now())) this.view.show(time);
     const coloured = this.settings.look.colour !== TISSUE;
-    this.bar.setRange(coloured ? (this.view?.colourRange ?? 0) : 0);
+    const scale = this.scale();
+    if (scale) this.bar.describe(scale.colouring.label, scale.title);
+    this.bar.setRange(scale?.high ?? 0, scale?.low ?? 0);
     this.rangeChoice.hidden = !coloured;
     this.canvas.dataset["look"] = this.view?.fine === false ? "plain" : "fine";
     this.readout.textContent = this.describeTime();
     this.slider.setAttribute("aria-valuetext", this.readout.textContent);
     const label =
-      `Surface of ${this.current().label}, ${coloured ? "coloured by equivalent shear strain" : "as tissue"}, ` +
+      `Surface of ${this.current().label}, ${scale ? `coloured by ${scale.colouring.label}` : "as tissue"}, ` +
       `at ${this.readout.textContent}. Arrow keys turn it, + and − zoom, C cuts it open, G sees through it, ` +
-      "F colours it by equivalent shear strain or as tissue.";
+      "F colours it by a field or as tissue.";
     this.canvas.setAttribute("aria-label", label);
     this.state.setPlayhead(end > start ? { variant: this.settings.variant, time } : null);
+  }
+
+  /** The colour scale in the units that it is read in; null: the body looks as tissue. */
+  private scale(): { colouring: Colouring; title: string; low: number; high: number } | null {
+    if (!this.view || this.settings.look.colour === TISSUE) return null;
+    const colouring = colouringOf(this.settings.look.colour);
+    const { low, high } = this.view.colourRange;
+    const { unit, perUnit } = unitOf(colouring, low, high);
+    return { colouring, title: `${colouring.symbol} [${unit}]`, low: low * perUnit, high: high * perUnit };
   }
 
   private describeTime(): string {
@@ -307,14 +323,14 @@ export class MeshPanel {
 
   private savePicture(): void {
     if (!this.view) return;
-    const range = this.settings.look.colour === TISSUE ? null : this.view.colourRange;
+    const colours = this.scale();
     const { scaleBar } = this.view;
     const factor = this.settings.exaggeration;
     const caption =
       `${this.scene.title} · ${this.current().label} · ${this.describeTime()}` +
       (factor === 1 ? "" : ` · displacement ${factor}×`);
     this.view.stage.withFinePicture((canvas) =>
-      composePicture(canvas, { range, scale: scaleBar.shownLength }, caption).toBlob((blob) => {
+      composePicture(canvas, { colours, scale: scaleBar.shownLength }, caption).toBlob((blob) => {
         if (blob) download(`${this.scene.name}-${this.settings.variant}.png`, blob);
       }),
     );
@@ -340,10 +356,18 @@ export class MeshPanel {
     else if (body && clipKey(event.key, this.settings.clip, body)) {
       this.cutChanged();
       this.cut.refresh();
-    } else if (lookKey(event.key, this.settings.look, STRAIN)) this.lookChanged();
+    } else if (lookKey(event.key, this.settings.look, FIRST_FIELD)) this.lookChanged();
     else return;
     event.preventDefault();
   }
+}
+
+/** What frames of the variants can be coloured by, in the order of the list. */
+function fieldsOf(variants: readonly MeshVariant[]): Colouring[] {
+  const known = new Set(["intensity", "displacement"]);
+  for (const { surface } of variants)
+    for (const frame of surface.frames) for (const name of Object.keys(frame.fields ?? {})) known.add(name);
+  return COLOURINGS.filter(({ name }) => known.has(name));
 }
 
 /** First and last frame's time; equal where nothing moves. */

@@ -6,6 +6,7 @@ import { currentTheme, onTheme, themeColour } from "../page/theme.ts";
 import type { SurfaceData, VariantData } from "../report_data.ts";
 import { type ClipBody, type ClipSettings, clipPlane } from "./clip.ts";
 import { fineIsFast, hopeForFine, Pace } from "./drawing_speed.ts";
+import { colouringOf } from "./fields.ts";
 import { ForceArrow, type ForceNow } from "./force_arrow.ts";
 import { interpolate } from "./interpolate.ts";
 import { type LookSettings, TISSUE } from "./look.ts";
@@ -13,7 +14,7 @@ import { ScaleBar } from "./scale_bar.ts";
 import { Stage } from "./stage.ts";
 import { SurfaceModel } from "./surface_model.ts";
 import { TissueMaterial } from "./tissue_material.ts";
-import { Timeline } from "./timeline.ts";
+import { joined, type Span, Timeline } from "./timeline.ts";
 
 export type MeshVariant = VariantData & { surface: SurfaceData };
 export type RangeChoice = "all" | "variant" | "frame";
@@ -33,7 +34,6 @@ export interface ViewSettings {
 export class MeshView {
   readonly stage: Stage;
   private readonly timelines = new Map<string, Timeline>();
-  private readonly largest: number; // intensity over all variants
   readonly scaleBar = new ScaleBar();
   readonly arrow = new ForceArrow();
   private readonly material = new TissueMaterial();
@@ -41,7 +41,7 @@ export class MeshView {
   private canBeFine: boolean;
   private model: SurfaceModel | null = null;
   private modelOf = "";
-  private range = 0;
+  private range: Span = { low: 0, high: 0 };
 
   constructor(
     canvas: HTMLCanvasElement,
@@ -51,13 +51,12 @@ export class MeshView {
   ) {
     this.stage = new Stage(canvas, context);
     this.canBeFine = hopeForFine();
-    this.stage.beforeDrawing = () => this.cut();
+    this.stage.beforeDrawing = () => {
+      this.cut();
+      this.arrow.keepInside(this.stage);
+    };
     this.stage.afterDrawing = () => this.annotate();
     this.stage.scene.add(this.arrow.group);
-    this.largest = Math.max(
-      0,
-      ...variants.flatMap((variant) => variant.surface.frames.map((frame) => frame.intensity_max)),
-    );
     onTheme(() => this.recolour());
     this.showVariant();
     this.fit();
@@ -65,14 +64,26 @@ export class MeshView {
 
   /** Motion of the variant shown, decoded at its first use. */
   get timeline(): Timeline {
-    const name = this.settings.variant;
+    return this.timelineOf(this.settings.variant);
+  }
+
+  private timelineOf(name: string): Timeline {
     let timeline = this.timelines.get(name);
     if (!timeline) {
       const variant = this.variants.find((candidate) => candidate.name === name) ?? this.variants[0]!;
       timeline = new Timeline(variant.surface);
       this.timelines.set(name, timeline);
     }
+    timeline.field = colouringOf(this.settings.look.colour).name;
     return timeline;
+  }
+
+  /** Between which numbers colours go at a time. A body that is opened shows what is inside. */
+  private rangeAt(time: number): Span {
+    const whole = this.settings.clip.on && this.timeline.tetsAt(time) !== null;
+    if (this.settings.range === "frame") return this.timeline.spanAt(time, whole);
+    if (this.settings.range === "variant") return this.timeline.span(whole);
+    return this.variants.map(({ name }) => this.timelineOf(name).span(whole)).reduce(joined);
   }
 
   get marked(): { held: number; driven: number } {
@@ -105,8 +116,8 @@ export class MeshView {
     return true;
   }
 
-  /** End of the colour scale now. */
-  get colourRange(): number {
+  /** Ends of the colour scale now [SI]. */
+  get colourRange(): Span {
     return this.range;
   }
 
@@ -137,13 +148,8 @@ export class MeshView {
   /** Shows the state at a time [s] with the present settings. */
   show(time: number): void {
     if (this.modelOf !== this.settings.variant) this.showVariant();
-    const { exaggeration, range, edges, ghost, marks, look } = this.settings;
-    this.range =
-      range === "all"
-        ? this.largest
-        : range === "variant"
-          ? this.timeline.intensityMax
-          : this.timeline.intensityAt(time);
+    const { exaggeration, edges, ghost, marks, look } = this.settings;
+    this.range = look.colour === TISSUE ? { low: 0, high: 0 } : this.rangeAt(time);
     this.model?.setLook({ coloured: look.colour !== TISSUE, seeThrough: look.seeThrough, fine: this.fine });
     this.model?.show({ edges, ghost, marks });
     this.model?.update(time, exaggeration, this.range);

@@ -8,7 +8,7 @@ import { lengthText } from "./scale_bar.ts";
 const CAPTION_HEIGHT = 36; // CSS pixels
 
 export interface PictureScales {
-  range: number | null; // end of the colour scale; null: the body is not coloured
+  colours: { title: string; low: number; high: number } | null; // the colour scale; null: the body is not coloured
   scale: { metres: number; pixels: number }; // the bar of length, pixels in CSS
 }
 
@@ -27,7 +27,7 @@ export function composePicture(view: HTMLCanvasElement, scales: PictureScales, c
   context.font = `${13 * unit}px ${themeColour("--font")}`;
   context.textBaseline = "middle";
   context.fillText(caption, 14 * unit, canvas.height - (CAPTION_HEIGHT / 2) * unit);
-  if (scales.range !== null) drawBar(context, scales.range, unit, canvas.width);
+  if (scales.colours) drawBar(context, scales.colours, unit, canvas.width);
   drawLength(context, scales.scale, unit, view.height);
   return canvas;
 }
@@ -52,7 +52,12 @@ function drawLength(
   context.fillText(lengthText(metres), left + 4 * unit, y - 4 * unit);
 }
 
-function drawBar(context: CanvasRenderingContext2D, range: number, unit: number, width: number): void {
+function drawBar(
+  context: CanvasRenderingContext2D,
+  { title, low, high }: NonNullable<PictureScales["colours"]>,
+  unit: number,
+  width: number,
+): void {
   const left = width - 62 * unit;
   const top = 38 * unit;
   const height = 150 * unit;
@@ -64,12 +69,12 @@ function drawBar(context: CanvasRenderingContext2D, range: number, unit: number,
   }
   context.fillStyle = themeColour("--ink");
   context.textBaseline = "middle";
-  const { values, increment } = barTicks(range);
+  const { values, increment } = barTicks(high, low);
   for (const value of values) {
-    const y = top + height * (1 - (range > 0 ? value / range : 0));
+    const y = top + height * (1 - (high > low ? (value - low) / (high - low) : 0));
     context.fillText(formatTick(value, increment), left + 17 * unit, y);
   }
   context.textAlign = "right";
-  context.fillText("Equivalent shear strain s [–]", width - 14 * unit, 20 * unit);
+  context.fillText(title, width - 14 * unit, 20 * unit);
   context.textAlign = "left";
 }

@@ -148,6 +148,13 @@ export class Stage {
     return { x: ((1 + seen.x) * width) / 2, y: ((1 - seen.y) * height) / 2 };
   }
 
+  /** The point under a place of the canvas [CSS px] that is as far from the eye's plane as another. */
+  fromScreen(at: { x: number; y: number }, like: THREE.Vector3): THREE.Vector3 {
+    const { width, height } = this.size;
+    const depth = like.clone().project(this.camera).z;
+    return new THREE.Vector3((2 * at.x) / width - 1, 1 - (2 * at.y) / height, depth).unproject(this.camera);
+  }
+
   /** Length that a CSS pixel shows at the distance one looks at [m]. */
   get metresPerPixel(): number {
     const up = 2 * this.distance * Math.tan((FIELD_OF_VIEW * Math.PI) / 360);

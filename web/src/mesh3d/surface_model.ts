@@ -11,12 +11,14 @@ import { BodySkin } from "./body_skin.ts";
 import type { ClipBody } from "./clip.ts";
 import { ClipCap } from "./clip_cap.ts";
 import { ContactShadow } from "./contact_shadow.ts";
+import { FieldCap } from "./field_cap.ts";
 import { InnerRegions } from "./inner_regions.ts";
 import { InstrumentModel } from "./instrument_model.ts";
 import { markTexture } from "./mark_texture.ts";
 import { coloursOf, regionTints } from "./tissue_colours.ts";
 import type { TissueMaterial } from "./tissue_material.ts";
-import type { SurfaceMotion } from "./timeline.ts";
+import { VesselModel } from "./vessel_model.ts";
+import type { Span, SurfaceMotion } from "./timeline.ts";
 
 const CREASE_DEGREES = 28;
 /** Marks are drawn this share of the mesh's size nearer, or the skin beside a vertex would cut its sign. */
@@ -62,7 +64,10 @@ export class SurfaceModel {
   readonly skin: THREE.Mesh;
   private readonly skinGeometry: THREE.BufferGeometry;
   private readonly instruments: InstrumentModel;
+  private readonly vessel: VesselModel | null;
   private readonly cap: ClipCap;
+  private readonly fieldCap = new FieldCap();
+  private tets: Uint32Array | null; // of the whole body now; null: its surfaces alone are known
   private shown: Uint32Array; // triangles of the skin now …
   private shownKinds: Uint8Array | null; // … and their kinds
   private look: ModelLook = { coloured: false, seeThrough: false, fine: true };
@@ -78,6 +83,7 @@ export class SurfaceModel {
     time: "first" | "again" = "first",
   ) {
     this.shown = timeline.triangles;
+    this.tets = timeline.tetsAt(timeline.frames[0]!.time);
     this.shownKinds = timeline.kindsAt(timeline.frames[0]!.time);
     this.look.fine = fine;
     this.box = new THREE.Box3().setFromArray(timeline.rest);
@@ -103,6 +109,11 @@ export class SurfaceModel {
     );
     this.skinGeometry = this.skin.geometry;
     this.instruments = new InstrumentModel(timeline, this.size);
+    this.vessel = timeline.container ? new VesselModel(timeline.container) : null;
+    if (this.vessel) {
+      this.group.add(this.vessel.group);
+      this.disposables.push(this.vessel);
+    }
     const middle = this.box.getCenter(new THREE.Vector3());
     this.cap = new ClipCap(this.body.mesh.geometry, middle, this.size);
     this.cap.tissue = raw;
@@ -112,6 +123,7 @@ export class SurfaceModel {
       this.shadow.mesh,
       this.body.mesh,
       this.cap.group,
+      this.fieldCap.mesh,
       this.inner.group,
       this.body.edges,
       this.held,
@@ -121,7 +133,7 @@ export class SurfaceModel {
       this.instruments.group,
     );
     this.group.traverse((object) => (object.frustumCulled = false));
-    this.disposables.push(this.instruments, this.cap, this.edgeMaterial, this.ghostLine, this.ghostSkin);
+    this.disposables.push(this.fieldCap, this.instruments, this.cap, this.edgeMaterial, this.ghostLine, this.ghostSkin);
     this.disposables.push(this.body, this.inner, this.shadow, this.skin.material as THREE.Material);
   }
 
@@ -176,11 +188,13 @@ export class SurfaceModel {
     this.ghost.visible = false;
   }
 
-  /** Shape and colours at a time [s]; colours reach their end at `range`. */
-  update(time: number, exaggeration: number, range: number): void {
+  /** Shape and colours at a time [s]; colours go from `low` to `high`. */
+  update(time: number, exaggeration: number, { low, high }: Span): void {
     this.timeline.sample(time, exaggeration, this.positions.array as Float32Array, this.intensity);
-    const perUnit = range > 0 ? 1 / range : 0;
-    for (let i = 0; i < this.intensity.length; i++) this.intensity[i] = Math.min(1, this.intensity[i]! * perUnit);
+    const perUnit = high > low ? 1 / (high - low) : 0;
+    for (let i = 0; i < this.intensity.length; i++)
+      this.intensity[i] = Math.min(1, Math.max(0, (this.intensity[i]! - low) * perUnit));
+    this.tets = this.timeline.tetsAt(time);
     this.positions.needsUpdate = true;
     this.showTriangles(this.timeline.trianglesAt(time), this.timeline.kindsAt(time));
     this.body.update(this.positions.array as Float32Array, this.intensity);
@@ -232,6 +246,10 @@ export class SurfaceModel {
     const cut = [this.body.mesh, this.body.edges, this.held, this.driven, this.hiddenDriven, ...this.ghost.children];
     for (const object of cut) ((object as THREE.Mesh).material as THREE.Material).clippingPlanes = planes;
     this.cap.plane = plane;
+    const known = this.look.coloured && this.tets !== null;
+    this.cap.hidden = known; // the field is known inside, too
+    if (known && this.tets) this.fieldCap.show(plane, this.positions.array as Float32Array, this.intensity, this.tets);
+    else this.fieldCap.hide();
     this.shadow.mesh.visible = plane === null; // the shadow is that of the whole body
     this.inner.plane = plane;
     this.inner.show(this.look.seeThrough || this.cap.open, this.look.coloured);
@@ -285,6 +303,7 @@ export class SurfaceModel {
     (this.driven.material as THREE.PointsMaterial).color.set(colours.driven);
     (this.hiddenDriven.material as THREE.PointsMaterial).color.set(colours.driven);
     this.instruments.colour(colours.instrument);
+    if (this.vessel) this.vessel.colour = colours.instrument;
     this.cap.colour = colours.cap;
   }
 

@@ -35,7 +35,13 @@ export function svgButton(figure: HTMLElement, name: string): HTMLButtonElement 
 
 /** A title as the name of a file. */
 export function fileName(title: string): string {
-  return title.normalize("NFKD").replace(/[^\w.-]+/g, "-").replace(/^-+|-+$/g, "").toLowerCase() || "chart";
+  return (
+    title
+      .normalize("NFKD")
+      .replace(/[^\w.-]+/g, "-")
+      .replace(/^-+|-+$/g, "")
+      .toLowerCase() || "chart"
+  );
 }
 
 /** The figure as the text of an SVG file. */
@@ -96,7 +102,10 @@ function background(style: CSSStyleDeclaration, box: DOMRect, x: number, y: numb
     const id = `g${number(x)}-${number(y)}`;
     const stops = colours.map((c, i) => `<stop offset="${number(i / (colours.length - 1))}" stop-color="${c}"/>`);
     const way = up ? 'x1="0" y1="1" x2="0" y2="0"' : 'x1="0" y1="0" x2="1" y2="0"';
-    return [`<linearGradient id="${id}" ${way}>${stops.join("")}</linearGradient>`, `<rect ${place} fill="url(#${id})"/>`];
+    return [
+      `<linearGradient id="${id}" ${way}>${stops.join("")}</linearGradient>`,
+      `<rect ${place} fill="url(#${id})"/>`,
+    ];
   }
   const colour = style.backgroundColor;
   if (colour === "transparent" || /, 0\)$/.test(colour) || box.width === 0) return [];
