@@ -70,3 +70,7 @@ export function unitOf(colouring: Colouring, low: number, high: number): { unit:
   const most = Math.max(Math.abs(low), Math.abs(high));
   return colouring.units.find(({ upTo }) => most <= upTo) ?? colouring.units[colouring.units.length - 1]!;
 }
+
+/** "equivalent shear strain": its label within a sentence, without the symbol. */
+export const spoken = ({ label }: Colouring): string =>
+  label.replace(/ (s|q|p|\|u\|)$/, "").replace(/^[A-Z]/, (letter) => letter.toLowerCase());

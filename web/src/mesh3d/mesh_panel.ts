@@ -10,7 +10,7 @@ import { ClipControls } from "./clip_controls.ts";
 import { ColourBar } from "./colour_bar.ts";
 import { type MeshVariant, MeshView, type RangeChoice, type ViewSettings } from "./mesh_view.ts";
 import { Player, speedsFor } from "./player.ts";
-import { type Colouring, COLOURINGS, colouringOf, unitOf } from "./fields.ts";
+import { type Colouring, COLOURINGS, colouringOf, spoken, unitOf } from "./fields.ts";
 import { composePicture } from "./screenshot.ts";
 import { interpolate } from "./interpolate.ts";
 import { lookKey, rememberedLook, rememberLook, TISSUE } from "./look.ts";
@@ -200,14 +200,14 @@ export class MeshPanel {
     if (this.player.playing && this.view?.tooSlow(performance.now())) this.view.show(time);
     const coloured = this.settings.look.colour !== TISSUE;
     const scale = this.scale();
-    if (scale) this.bar.describe(scale.colouring.label, scale.title);
+    if (scale) this.bar.describe(spoken(scale.colouring), scale.title);
     this.bar.setRange(scale?.high ?? 0, scale?.low ?? 0);
     this.rangeChoice.hidden = !coloured;
     this.canvas.dataset["look"] = this.view?.fine === false ? "plain" : "fine";
     this.readout.textContent = this.describeTime();
     this.slider.setAttribute("aria-valuetext", this.readout.textContent);
     const label =
-      `Surface of ${this.current().label}, ${scale ? `coloured by ${scale.colouring.label}` : "as tissue"}, ` +
+      `Surface of ${this.current().label}, ${scale ? `coloured by ${spoken(scale.colouring)}` : "as tissue"}, ` +
       `at ${this.readout.textContent}. Arrow keys turn it, + and − zoom, C cuts it open, G sees through it, ` +
       "F colours it by a field or as tissue.";
     this.canvas.setAttribute("aria-label", label);
