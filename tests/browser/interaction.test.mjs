@@ -162,7 +162,7 @@ describe("reader's actions", () => {
     );
     assert.match(await mesh.locator(".mesh-readout").innerText(), /^1\.100\ss · depth 10\.00\smm/);
     assert.equal((await pixelsOf(page, view)).hash, first, "the end looks as before");
-    await mesh.locator("label.select", { hasText: "Displacement" }).locator("select").selectOption("2");
+    await mesh.getByLabel("Displacement", { exact: true }).selectOption("2");
     await settle(page);
     const exaggerated = (await pixelsOf(page, view)).hash;
     assert.notEqual(exaggerated, first);
