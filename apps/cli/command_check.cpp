@@ -205,8 +205,9 @@ void print_membranes(const InstrumentSpec& instrument) {
 /// Where an instrument starts that the body places.
 void print_start(const InstrumentSpec& x, const TetMesh& mesh) {
   if (!x.aim) return;
-  const Vec3d tip = start_pose(x, mesh).position * 1e3;
-  say("           starts at ({:.4g}, {:.4g}, {:.4g}) mm\n", tip.x, tip.y, tip.z);
+  const Vec3d tip = start_pose(x, mesh).position;
+  const auto mm = [](double metres) { return std::round(1e9 * metres) * 1e-6 + 0.0; };  // to a nanometre: no -1e-15
+  say("           starts at ({:.4g}, {:.4g}, {:.4g}) mm\n", mm(tip.x), mm(tip.y), mm(tip.z));
 }
 
 /// That an instrument's path passes the body by.
