@@ -141,7 +141,7 @@ const std::vector<Mistake> kMistakes{
     {"NoEnd", "[[tool]]\nname = \"press\"\nset = \"top\"\ndepth_mm = 1\n", "",
      "s.toml:1:1: motion: nothing says when the run ends: give `duration_s` or `max_steps`, or a [[tool]] or "
      "[[instrument]] whose motion "
-     "ends it"},
+     "ends it, or a [[fixed]] set with a record"},
     {"TwoVariantsOfOneName", "", "[[variant]]\nname = \"a\"\n[[variant]]\nname = \"A\"\n",
      "s.toml:19:8: variant.1.name: \"A\" is taken (upper and lower case count as the same); names must differ"},
     {"VariantWithoutName", "", "[[variant]]\nlabel = \"a\"\n",
