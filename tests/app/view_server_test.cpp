@@ -199,7 +199,7 @@ TEST_F(LiveServer, ColoursForEachViewer) {
   EXPECT_EQ(wait_for_field(second, 3).size(), 64 + 64 + 7 * vertices);
   EXPECT_EQ(wait_for_field(third, 0).size(), 64 + 64 + 6 * vertices);
   EXPECT_EQ(first.wait_for_binary(2)[3], 1);
-  third.send({.kind = CommandKind::colour, .sequence = 2, .index = 4});
+  third.send({.kind = CommandKind::colour, .sequence = 2, .index = kFields});
   EXPECT_EQ(third.wait_for_close().text, "there is no such field");
 }
 

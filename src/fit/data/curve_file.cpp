@@ -246,6 +246,15 @@ bool is_parted_number(const std::string& before, const std::string& after) {
   return has_thousands(before + "," + after, '.');
 }
 
+[[noreturn]] void fail_parted(const CurveFile& file, const CurveFile::Row& row, std::size_t width,
+                              const std::string& before, const std::string& after) {
+  fail_in(file.file, row.line,
+          "has " + std::to_string(row.fields.size()) + " fields where " + std::to_string(width) +
+              " are expected: in \"" + before + ',' + after +
+              "\" a comma parts thousands as well as columns; export with `;` or tabs between the columns, or with "
+              "numbers in quotes");
+}
+
 /// Complains of rows wider than others because commas part columns and thousands alike.
 void require_whole_numbers(const CurveFile& file) {
   if (file.separator != ',') return;
@@ -259,12 +268,7 @@ void require_whole_numbers(const CurveFile& file) {
   for (const CurveFile::Row& row : file.rows) {
     for (std::size_t i = 0; row.fields.size() > width && i + 1 < row.fields.size(); ++i) {
       const std::string &a = row.fields[i].text, &b = row.fields[i + 1].text;
-      if (is_parted_number(a, b))
-        fail_in(file.file, row.line,
-                "has " + std::to_string(row.fields.size()) + " fields where " + std::to_string(width) +
-                    " are expected: in \"" + a + "," + b +
-                    "\" a comma parts thousands as well as columns; export with `;` or tabs between the columns, or "
-                    "with numbers in quotes");
+      if (is_parted_number(a, b)) fail_parted(file, row, width, a, b);
     }
   }
 }
