@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "base/text.h"
 #include "bench/json_option.h"
 #include "cli/commands.h"
 #include "cli/exit_code.h"
@@ -30,6 +31,7 @@ constexpr const char* kMeshFooter =
     "Examples:\n"
     "  glisson mesh scenes/organs/liver.toml --out liver.vtu\n"
     "  glisson mesh organ.stl --scale 0.001 --edge-mm 4 --out organ.vtu\n"
+    "  glisson mesh abaqus_mm.inp --scale 0.001 --out organ.vtu\n"
     "  glisson mesh scene.toml --set mesh.edge_mm=3 --out fine.vtu --json figures.json";
 
 constexpr double kMostEdges = 1000.0;  ///< across a surface, from which on its unit is in doubt
@@ -157,6 +159,25 @@ Variant surface_variant(const MeshOptions& options) {
   return variant;
 }
 
+/// Whether a file holds tets already, by its name.
+bool is_tet_file(const std::filesystem::path& file) {
+  const std::string ending = detail::lower_case(file.extension().string());
+  return ending == ".vtu" || ending == ".vtk" || ending == ".msh" || ending == ".inp";
+}
+
+/// The tets of a file as they are, in metres and as .vtu.
+Variant tet_file_variant(const MeshOptions& options) {
+  const std::string& file = options.scene.scene;
+  if (options.edge_mm || !options.scene.set.empty())
+    throw std::invalid_argument(fmt::format("{} holds tets, which are written as they are: leave out {}", file,
+                                            options.edge_mm ? "--edge-mm" : "--set"));
+  Variant variant;
+  variant.name = "main";
+  variant.scene_name = file;
+  variant.mesh = MeshFile{file, options.scale.value_or(1.0)};
+  return variant;
+}
+
 Variant scene_variant(const MeshOptions& options) {
   for (const auto& [name, given] : {std::pair("--edge-mm", options.edge_mm), std::pair("--scale", options.scale)}) {
     if (given)
@@ -174,7 +195,10 @@ int mesh(const MeshOptions& options) {
     throw std::invalid_argument("--out " + options.out +
                                 ": the mesh is written as .vtu; give a name that ends in .vtu");
   }
-  const Variant variant = is_surface_file(options.scene.scene) ? surface_variant(options) : scene_variant(options);
+  const std::string& given = options.scene.scene;
+  const Variant variant = is_surface_file(given) ? surface_variant(options)
+                          : is_tet_file(given)   ? tet_file_variant(options)
+                                                 : scene_variant(options);
   MeshCache meshes(options.quiet);
   catch_interrupts();
   const auto start = std::chrono::steady_clock::now();
@@ -214,14 +238,16 @@ int mesh(const MeshOptions& options) {
 }  // namespace
 
 void add_mesh(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand("mesh", "write the mesh of a scene or surface, and its figures");
+  CLI::App* command =
+      program.add_subcommand("mesh", "write the mesh of a scene, a surface or another file, and its figures");
   const auto options = std::make_shared<MeshOptions>();
   add_scene_options(*command, options->scene);
-  command->get_option("scene")->description("scene file (TOML), or a closed surface (.stl, .obj, .ply)");
+  command->get_option("scene")->description(
+      "scene file (TOML), a closed surface (.stl, .obj, .ply), or tets (.vtu, .vtk, .msh, .inp)");
   command->add_option("--edge-mm", options->edge_mm, "of a surface: mean length of the tets' edges")->type_name("E");
   command
       ->add_option("--scale", options->scale,
-                   "of a surface: factor on its coordinates, 0.001 for a file in millimetres")
+                   "of a surface or of tets: factor on the coordinates, 0.001 for a file in millimetres")
       ->type_name("FACTOR");
   command->add_option("--out", options->out, "the mesh, a .vtu file")->required()->type_name("FILE")->check(file_place);
   add_json_option(*command, options->json);

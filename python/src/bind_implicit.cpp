@@ -1,4 +1,6 @@
 // bind_implicit.cpp — bodies of shapes or of any function of a point, their mesher, and the liver.
+#include <nanobind/stl/tuple.h>
+
 #include <sstream>
 #include <typeinfo>
 

@@ -83,6 +83,20 @@ TEST_F(MeshCommand, ExplainsWhatItRefuses) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "m.vtu"));
 }
 
+// Tets of a file are written as they are, in metres; an edge to be made of them is refused.
+TEST_F(MeshCommand, TakesTetsOfAFile) {
+  const std::string file = write(
+      "mm.inp",
+      "*NODE\n1, 0, 0, 0\n2, 20, 0, 0\n3, 0, 20, 0\n4, 0, 0, 20\n*ELEMENT, TYPE=C3D4, ELSET=all\n1, 1, 2, 3, 4\n");
+  ASSERT_THAT(run({"mesh", file, "--scale", "0.001", "--out", "tet.vtu"}), Exits(0));
+  const TetMesh mesh = read_mesh(folder_ / "tet.vtu").mesh;
+  ASSERT_EQ(mesh.tets.size(), 1U);
+  EXPECT_NEAR(volume(mesh), 8e-6 / 6.0, 1e-15);
+  const Outcome refused = run({"mesh", file, "--edge-mm", "3", "--out", "tet.vtu"});
+  EXPECT_THAT(refused, Exits(2));
+  EXPECT_THAT(refused.err, HasSubstr("holds tets, which are written as they are: leave out --edge-mm"));
+}
+
 // A closed surface is meshed without a scene; its region has the file's name.
 TEST_F(MeshCommand, MeshesSurfaces) {
   const std::string ball = write("ball.stl", stl_binary(icosphere(30.0, 3)));
