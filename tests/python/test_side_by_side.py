@@ -30,7 +30,10 @@ ROWS = table()
 def place(tmp_path, monkeypatch, scenes):
     """A folder with the files that the table names."""
     monkeypatch.chdir(tmp_path)
-    glisson.write_vtu("liver.vtu", glisson.box_mesh(size=[40, 40, 80]))
+    millimetres = glisson.box_mesh(size=[40, 40, 80])
+    glisson.write_vtu("liver.vtu", millimetres)
+    meshio = pytest.importorskip("meshio")
+    meshio.Mesh(millimetres.vertices, {"tetra": millimetres.tets}).write("liver.mesh")
     (tmp_path / "scene.toml").write_text(
         'mesh = { kind = "box", cells = [1, 1, 2] }\n[[fixed]]\nset = "z_min"\n'
         '[[tool]]\nset = "z_max"\nvelocity_mm_s = 20\ndepth_mm = 1\n',
