@@ -5,14 +5,13 @@ Each function draws into `ax`, or into a figure of its own, and returns the axes
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterable, Mapping, Sequence
-from pathlib import Path
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._charts import COLOURS, STYLE, from_zero, line_look, name_lines, plot_run, style
+from ._charts import COLOURS, STYLE, from_zero, line_look, name_lines, style
+from ._charts import plot_run as run
 from ._core import ChartSpec, RunResult, Tissue, law_value
 from ._optional import need
 
@@ -36,29 +35,6 @@ def _axes(ax: Any, x: str, y: str) -> Any:
 def _legend(ax: Any) -> None:
     with style():
         ax.legend(fontsize=STYLE["font.size"])
-
-
-def run(
-    out: str | os.PathLike[str],
-    folder: str | os.PathLike[str] | None = None,
-    *,
-    formats: Sequence[str] = ("svg",),
-    chart: str | None = None,
-    variants: Sequence[str] | None = None,
-    size_mm: tuple[float, float] = (88.0, 66.0),
-) -> list[Path]:
-    """Writes the charts of a run's report, one file each; what `glisson plot OUT` does.
-
-    :param out: the folder of a run, or of `compare`, `converge`, `reproduce`; or the report.html itself
-    :param folder: where to write; none: `plots` in `out`
-    :param formats: svg, png, pdf
-    :param chart: only charts whose title contains this
-    :param variants: only lines of these
-    :param size_mm: width and height; 88 mm is a column of a journal
-    :returns: the files written
-    :raises ValueError: for what cannot be drawn, with the way out
-    """
-    return plot_run(out, folder, formats=formats, chart=chart, variants=variants, size_mm=size_mm)
 
 
 def forces(results: Iterable[RunResult] | Mapping[str, RunResult], *, against: str = "depth", ax: Any = None) -> Any:
