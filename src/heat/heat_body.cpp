@@ -93,6 +93,7 @@ double HeatBody::temperature_of(std::size_t vertex, double heat, double near) co
   double t = near;
   const VertexState here = state(vertex, t);
   double left = heat - here.heat;
+  if (!std::isfinite(left)) return left;
   const double way = left < 0.0 ? -1.0 : 1.0;
   while (true) {
     double corner = way * INFINITY;

@@ -46,7 +46,7 @@ class HeatBody {
   double volume(std::size_t vertex) const;
 
   VertexState state(std::size_t vertex, double temperature) const;
-  /// The temperature at which a vertex contains a heat. @param near  where the search begins [°C]
+  /// The temperature at which a vertex contains a heat; not finite where that is not. @param near  where the search begins [°C]
   double temperature_of(std::size_t vertex, double heat, double near) const;
 
  private:

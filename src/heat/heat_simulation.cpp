@@ -79,8 +79,6 @@ class HeatSimulation::Impl {
     for (std::size_t i = 0; i < held_.size(); ++i) now_.heat.push_back(body_.state(i, options.temperature).heat);
   }
 
-  const TetMesh& mesh() const { return mesh_; }
-
   struct Held {
     std::vector<std::uint32_t> vertices;
     TimeFunction<double> temperature;

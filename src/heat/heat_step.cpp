@@ -91,7 +91,8 @@ int HeatStepper::step(const Input& in, std::vector<double>& temperature, Flows& 
               ? 0.0
               : in.heat[i] + in.h * (flows.sum(i) + in.sources[i]) - states_[i].heat;
       const double per_kelvin = states_[i].capacity + in.h * states_[i].conductivity * links_[i];
-      if (per_kelvin > 0.0) worst = std::max(worst, std::abs(r) / per_kelvin);
+      const double off = per_kelvin > 0.0 ? std::abs(r) / per_kelvin : 0.0;
+      if (!(off <= worst)) worst = off;  // NaN, too
     }
     if (!std::isfinite(worst)) return -1;
     limiter = k < kFreeIterations ? Limiter::follows : Limiter::keeps;

@@ -96,6 +96,20 @@ TEST(HeatUse, VolumeBelowAnIsotherm) {
   }
 }
 
+// What overflows ends with a status, and the state is as before.
+TEST(HeatUse, EndsWhereNumbersDo) {
+  for (const double power : {1e308, -1e305}) {
+    for (const double step : {0.0, 1.0}) {
+      HeatSimulation s(rod(4), {{0, ThermalTissue{}}}, {.step = step});
+      s.add_line_source({{0.01, 0.002, 0.002}, {0.03, 0.002, 0.002}, [power](double) { return power; }});
+      while (s.steps() < 50 && s.step().status == HeatStatus::ok) continue;
+      EXPECT_LT(s.steps(), 50U);
+      for (const double t : s.temperature()) EXPECT_TRUE(std::isfinite(t));
+      for (const double e : s.state().heat) EXPECT_TRUE(std::isfinite(e));
+    }
+  }
+}
+
 TEST(HeatUse, RefusesByName) {
   using ::testing::HasSubstr;
   const auto of = [](const ThermalTissue& t) { HeatSimulation(rod(2), {{0, t}}); };

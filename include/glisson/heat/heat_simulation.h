@@ -120,7 +120,7 @@ class HeatSimulation {
   double time() const;
   const TetMesh& mesh() const;
   std::span<const double> temperature() const;  ///< of every vertex [°C]
-  /// Share that is not frozen, the mean over a tet's vertices and their part in it.
+  /// Of every vertex the share that is frozen of its part of the body; moves on while a row of vertices freezes.
   double frozen_volume() const;  ///< [m³]
   /// Volume that is colder than an isotherm; temperature is linear within tets [m³].
   double volume_below(double temperature) const;
