@@ -121,7 +121,7 @@ TEST(ShapesLiver, LetsItsTumourBeFelt) {
   std::array<double, 2> beside{}, above{};  // largest forces of the first press, 28 mm aside, and of the second
   for (std::size_t v = 0; v < 2; ++v) {
     Variant variant = scene.variants[v];
-    variant.probes.push_back({{.name = "tumour", .where = ProbeRegion{"tumour"}}, ""});
+    variant.probes.push_back({.options = {.name = "tumour", .where = ProbeRegion{"tumour"}}, .tip = "", .origin = ""});
     ProbedRecorder run("tumour_displacement_y_m");
     const std::atomic<bool> stop{false};
     EXPECT_EQ(run_variant(variant, {}, run, stop).end, RunSummary::End::finished);
