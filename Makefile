@@ -8,7 +8,7 @@ PROGRAM := $(BUILD)/bin/glisson
 OUT ?= out/reproduce
 
 .DEFAULT_GOAL := help
-.PHONY: help run test test-avx2 verify check setup format clean citations figures pages layout lint sanitizers races fuzz fuzz-keep
+.PHONY: help run test test-avx2 verify check setup format clean citations figures rooms pages layout lint sanitizers races fuzz fuzz-keep
 .NOTPARALLEL:
 
 help:  ## this list
@@ -44,15 +44,18 @@ verify:  ## build with tests and run those of many random bodies, scenes and pop
 	@scripts/build.sh $(BUILD) $(JOBS)
 	@cd $(BUILD) && $(CTEST) -L verify
 
-check:  ## sanitizers, fuzz corpus, layout, lint, citations, figures, pages: all of them, even when one fails
+check:  ## sanitizers, fuzz corpus, layout, lint, citations, figures, rooms, pages: all of them, even when one fails
 	@scripts/setup.sh check
-	@$(MAKE) --no-print-directory --keep-going citations figures pages layout lint sanitizers
+	@$(MAKE) --no-print-directory --keep-going citations figures rooms pages layout lint sanitizers
 
 citations:
 	@scripts/check_citations
 
 figures:
 	@scripts/check_figures
+
+rooms:
+	@scripts/check_rooms
 
 # The clone compiles what this checkout has compiled, through the compiler's cache; FULL=1 does without, and runs all blocks.
 pages:  ## run the blocks of README and docs as they are printed, in a fresh clone (FULL=1: the long ones too)

@@ -8,7 +8,7 @@
 #
 # A folder that is absent, half made, of another compiler, version, flags or libraries, or that cannot be built, is left alone
 # and everything is compiled here.
-set(glisson_offered glisson_options glisson glisson_scene glisson_io glisson_fit glisson_report glisson_fit_files)
+set(glisson_offered glisson_options glisson glisson_mesher glisson_scene glisson_io glisson_fit glisson_report glisson_fit_files)
 
 function(glisson_describe_build out)
   string(TOUPPER "${CMAKE_BUILD_TYPE}" type)
@@ -23,6 +23,8 @@ function(glisson_describe_build out)
 endfunction()
 
 function(glisson_offer_libraries)
+  get_property(rooms GLOBAL PROPERTY glisson_rooms)
+  list(TRANSFORM rooms PREPEND "room_")
   foreach(target IN LISTS glisson_offered)
     if(NOT TARGET ${target})
       return()
@@ -30,7 +32,7 @@ function(glisson_offer_libraries)
   endforeach()
   glisson_describe_build(ours)
   file(WRITE "${PROJECT_BINARY_DIR}/glisson_libraries.txt" "${ours}")
-  export(TARGETS ${glisson_offered} NAMESPACE built:: FILE "${PROJECT_BINARY_DIR}/glisson_libraries.cmake")
+  export(TARGETS ${glisson_offered} ${rooms} NAMESPACE built:: FILE "${PROJECT_BINARY_DIR}/glisson_libraries.cmake")
 endfunction()
 
 # glisson_same_build(FOLDER out): whether what FOLDER offers is what would be compiled here
@@ -57,6 +59,9 @@ macro(glisson_import_libraries folder)
     else()
       add_library(${target} ALIAS built::${short})
     endif()
+  endforeach()
+  foreach(room IN ITEMS base dynamics)  # of which the modules see the inside
+    add_library(room_${room} ALIAS built::room_${room})
   endforeach()
 endmacro()
 

@@ -17,7 +17,7 @@ OPTION = re.compile(r'add_(?:option|flag)\(\s*"([^"]+)"')
 TEST = re.compile(r"^(?:TYPED_)?TEST(?:_F|_P)?\((\w+),\s*(\w+)\)", re.MULTILINE)
 CTEST = re.compile(r"add_test\(NAME\s+(\w+)")
 TARGET = re.compile(r"add_executable\((\w+)")
-SHIPPED = re.compile(r"^(?:scenes|scripts|tests|bench|docs|python|include|src)/")
+SHIPPED = re.compile(r"^(?:scenes|scripts|tests|bench|docs|python|include|mesher|src|studies)/")
 SHELL_WORDS = {"cd", "cp", "node", "python3", "make", "cmake", "ninja", "ctest", "timeout", "env", "nice"}
 
 

@@ -6,12 +6,12 @@
 
 #include "bench/json_option.h"
 #include "cli/commands.h"
+#include "cli/comparison_report.h"
 #include "cli/exit_code.h"
 #include "cli/interrupt.h"
 #include "cli/mesh_cache.h"
 #include "cli/scene_options.h"
 #include "cli/standard_streams.h"
-#include "compare/comparison_report.h"
 #include "compare/problem_json.h"
 #include "report/json_text.h"
 #include "report/output_file.h"

@@ -4,7 +4,7 @@
 
 #include "base/text.h"
 #include "cli/standard_streams.h"
-#include "scene/parse/select.h"
+#include "scene/build/select.h"
 
 namespace glisson::app {
 namespace {

@@ -9,8 +9,8 @@
 #include "base/require_fields.h"
 #include "base/text.h"
 #include "heat/heat_step.h"
-#include "mesh/inspect/require_valid.h"
 #include "mesh/inspect/tet_locator.h"
+#include "mesh/topology/require_valid.h"
 
 namespace glisson {
 namespace {

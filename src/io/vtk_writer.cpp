@@ -21,7 +21,7 @@
 #include "io/vtk_log.h"
 #include "io/vtk_names.h"
 #include "io/vtk_start.h"
-#include "mesh/inspect/require_valid.h"
+#include "mesh/topology/require_valid.h"
 
 namespace glisson {
 namespace {

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "report/output_file.h"
-#include "scene/run/result_names.h"
+#include "scene/parse/result_names.h"
 
 namespace glisson {
 namespace {

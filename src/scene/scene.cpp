@@ -10,11 +10,11 @@
 #include "base/nearest.h"
 #include "glisson/scene/surface_file.h"
 #include "scene/build/build_instruments.h"
+#include "scene/build/select.h"
 #include "scene/parse/expand.h"
+#include "scene/parse/result_names.h"
 #include "scene/parse/sections.h"
-#include "scene/parse/select.h"
 #include "scene/parse/word_table.h"
-#include "scene/run/result_names.h"
 
 namespace glisson {
 namespace {

@@ -64,7 +64,7 @@ TEST_F(Bench, QuickRunWritesACompleteResult) {
 }
 
 // Every tissue of large deformation by one word, each with its ratio to the linear one.
-TEST_F(Bench, EveryModelIsMeasured) {
+TEST_F(Bench, EveryModelIsMeasured) {  // long
   const Outcome outcome =
       run({"bench", "--quick", "--sizes", "768", "--threads", "1", "--models", "all", "--json", "b.json"});
   ASSERT_THAT(outcome, Exits(0));
@@ -81,7 +81,7 @@ TEST_F(Bench, EveryModelIsMeasured) {
 }
 
 // The same program from the same state: a second run ends in the same state.
-TEST_F(Bench, StateIsTheSameFromRunToRun) {
+TEST_F(Bench, StateIsTheSameFromRunToRun) {  // long
   for (const std::string file : {"a.json", "b.json"}) {
     const std::vector<std::string> arguments{"bench", "--quick",   "--sizes", "768",    "--models",
                                              "full",  "--threads", "1",       "--json", file};
@@ -92,7 +92,7 @@ TEST_F(Bench, StateIsTheSameFromRunToRun) {
 }
 
 // Any sizes: each the box of cubes that comes nearest, once.
-TEST_F(Bench, TakesAnySizes) {
+TEST_F(Bench, TakesAnySizes) {  // long
   ASSERT_THAT(run({"bench", "--quick", "--sizes", "100,300,301,1200", "--models", "full", "--threads", "1", "--json",
                    "b.json"}),
               Exits(0));
@@ -121,7 +121,7 @@ TEST_F(Bench, EnergiesAreMeasuredBesideEachModel) {
 
 // An instruction set that is asked for is that of the kernels and of the peak they are held against, in every row; all reach
 // the same state to rounding, and the hash may differ.
-TEST_F(Bench, AForcedInstructionSetIsThatOfKernelsAndPeak) {
+TEST_F(Bench, AForcedInstructionSetIsThatOfKernelsAndPeak) {  // long
   std::set<std::string> names;
   for (const std::string isa : {"avx512", "avx2", "sse4"}) {
     const Outcome outcome = run({"bench", "--quick", "--sizes", "768", "--models", "linear,full,neo_hookean",
@@ -216,7 +216,7 @@ TEST_F(Bench, RealtimeFallsBehindWithoutPilingUp) {
 }
 
 // The largest body is one of those that were tried and kept the pace, with frames long enough for a loaded machine.
-TEST_F(Bench, RealtimeFindsTheLargestBody) {
+TEST_F(Bench, RealtimeFindsTheLargestBody) {  // long
   const std::string scene = write("s.toml", small_scene());
   ASSERT_THAT(run({"bench", "realtime", scene, "--set", "motion.duration_s=2", "--seconds", "0.4", "--frame-ms", "100",
                    "--threads", "1", "--find", "--set", "tissue.youngs_modulus_Pa=4e7", "--json", "r.json"}),

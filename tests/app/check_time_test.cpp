@@ -38,7 +38,7 @@ std::string block(int cells, const std::string& motion, const std::string& more 
 }
 
 // A first step of minutes is not waited for: mesh, sets and tissue are told, its cost is said not to be known.
-TEST_F(CheckTime, LongFirstStepIsNotWaitedFor) {
+TEST_F(CheckTime, LongFirstStepIsNotWaitedFor) {  // long
   const Outcome outcome = timed(block(26, "integrator = \"quasi_static\", step_s = 0.6"));
   EXPECT_THAT(outcome, Exits(0));
   EXPECT_LT(seconds_, kMost);
@@ -48,7 +48,7 @@ TEST_F(CheckTime, LongFirstStepIsNotWaitedFor) {
 }
 
 // What cannot be ended, as a search for the stable step of a million tets, is left: the program ends and says within what.
-TEST_F(CheckTime, EndsWithinWhatCannotBeEnded) {
+TEST_F(CheckTime, EndsWithinWhatCannotBeEnded) {  // long
   const Outcome outcome = timed(block(70, "integrator = \"central_difference\""));
   EXPECT_THAT(outcome, Exits(0));
   EXPECT_LT(seconds_, kMost);
@@ -57,7 +57,7 @@ TEST_F(CheckTime, EndsWithinWhatCannotBeEnded) {
 }
 
 // Of many variants those that time is left for are told.
-TEST_F(CheckTime, ManyVariantsAreToldAsFarAsTimeGoes) {
+TEST_F(CheckTime, ManyVariantsAreToldAsFarAsTimeGoes) {  // long
   std::string variants;
   for (int i = 0; i < 40; ++i) variants += "[[variant]]\nname = \"v" + std::to_string(i) + "\"\n";
   const Outcome outcome = timed(block(12, "integrator = \"central_difference\"", variants));

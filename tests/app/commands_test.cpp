@@ -384,7 +384,7 @@ motion = { kind = "press", depth_mm = 1 }
 // The paper's figures: all scenes in one report, every check computed and passed. The quick form ends figure 3 after
 // 0.1 s of motion, runs figure 4 on coarse cells and leaves bovine liver out; the fit of figures 5 and 6 and the checks are the
 // same as in the whole. Five curves are fitted; five others at 2 mm/s, five at 6 and five at 10 are only predicted.
-TEST_F(Commands, ReproducePassesItsChecks) {
+TEST_F(Commands, ReproducePassesItsChecks) {  // long
   const Outcome outcome = run({"reproduce", "--quick", "--out", "o"});
   ASSERT_THAT(outcome, Exits(0));
   const nlohmann::json report = report_data(folder_ / "o/report.html");

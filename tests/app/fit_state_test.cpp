@@ -158,7 +158,7 @@ starts = 24
 };
 
 // Of the result of a resumed fit nothing differs but what fit.json says of its session: runs made, their time, all time.
-TEST_F(ResumedFit, EndsWithTheResultOfOneThatWasNotStopped) {
+TEST_F(ResumedFit, EndsWithTheResultOfOneThatWasNotStopped) {  // long
   cut("cut");  // first: its words are looked for in a file that other runs fill, too
   ASSERT_THAT(run(command("cut")), Exits(0));
   ASSERT_THAT(run(command("whole")), Exits(0));

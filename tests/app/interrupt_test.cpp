@@ -54,7 +54,7 @@ using LongStep = ProgramTest;
 
 // Within a step of Newton's method that takes minutes the program says how long it has been at it, and Ctrl-C ends it within a second: the step is not
 // made, and what was written before stays.
-TEST_F(LongStep, SaysSoAndEndsAtOnce) {
+TEST_F(LongStep, SaysSoAndEndsAtOnce) {  // long
   Started program =
       start({"run", write("s.toml", R"(mesh = { kind = "box", cells = [26, 26, 26], size_m = [0.04, 0.04, 0.04] }
 tissue = { density_kg_m3 = 1000, hyperelastic = { kind = "neo_hookean", mu_Pa = 1000, bulk_modulus_Pa = 50000 } }

@@ -27,7 +27,7 @@ struct Cut {
 };
 
 // Through the middle: the copies are all of the plane's vertices, the halves share no vertex, and forces are theirs.
-TEST_P(Split, ThroughTheMiddle) {
+TEST_P(Split, ThroughTheMiddle) {  // long: *_in_double
   Cut body(GetParam());
   const double whole = mass(body.simulation);
   const SplitReport report = body.simulation.split_faces(body.middle());
@@ -40,7 +40,7 @@ TEST_P(Split, ThroughTheMiddle) {
 }
 
 // A cut that ends inside, then further removals and cuts through what was cut.
-TEST_P(Split, AndRemoveInTurns) {
+TEST_P(Split, AndRemoveInTurns) {  // long: *_in_double
   Cut body(GetParam());
   std::vector<Triangle> part = faces_where(body.middle(), body.mesh, [](const Vec3d& x) { return x.x < 0.018; });
   EXPECT_GT(body.simulation.split_faces(part).origins.size(), 20U);
@@ -55,7 +55,7 @@ TEST_P(Split, AndRemoveInTurns) {
 }
 
 // Face by face, in any order, a cut ends as in one call.
-TEST_P(Split, FaceByFaceEndsAsInOneCall) {
+TEST_P(Split, FaceByFaceEndsAsInOneCall) {  // long: *_in_double
   Cut at_once(GetParam()), in_steps(GetParam());
   std::vector<Triangle> faces = faces_where(at_once.middle(), at_once.mesh, [](const Vec3d& x) { return x.x < 0.02; });
   at_once.simulation.split_faces(faces);
@@ -67,7 +67,7 @@ TEST_P(Split, FaceByFaceEndsAsInOneCall) {
 }
 
 // While it is pressed and moves: momentum, energies and the tool's force pass the split unchanged, then balance.
-TEST_P(Split, WhileItMoves) {
+TEST_P(Split, WhileItMoves) {  // long: *_in_double
   SimulationOptions options = GetParam().options(std::nullopt);
   options.gravity = {0.0, 0.0, -9.81};
   options.damping_rate = 5.0;
@@ -97,7 +97,7 @@ TEST_P(Split, WhileItMoves) {
 }
 
 // Cut off and not held, the upper half falls as one: v = −g t and u as the scheme sums it up, to rounding.
-TEST_P(Split, TheUpperHalfFallsFreely) {
+TEST_P(Split, TheUpperHalfFallsFreely) {  // long: *_in_double
   SimulationOptions options = GetParam().options(1e-4);
   const Cut body(GetParam());
   options.gravity = {0.0, 0.0, -9.81};

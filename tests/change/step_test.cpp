@@ -47,7 +47,7 @@ TEST_P(Step, IsBelowThatOfABodyBuiltAnew) {
 }
 
 // Two thousand steps of a torn body full of noise: energy never grows beyond what was there.
-TEST_P(Step, KeepsATornBodyStable) {
+TEST_P(Step, KeepsATornBodyStable) {  // long: *_in_double
   Noisy body(GetParam());
   body.change();
   body.shake();
@@ -65,7 +65,7 @@ TEST_P(Step, KeepsATornBodyStable) {
 }
 
 // Removing in the middle of a noisy run, again and again, never lets it blow up.
-TEST_P(Step, KeepsABodyStableThatIsTornInMotion) {
+TEST_P(Step, KeepsABodyStableThatIsTornInMotion) {  // long: *_in_double
   Noisy body(GetParam());
   body.shake();
   const double initial = body.simulation.energies().initial;

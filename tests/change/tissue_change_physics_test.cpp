@@ -13,7 +13,7 @@ using enum Integrator;
 
 // A bar under a dead load, free to bulge: u_z(L) = −p L / E, whose load stays when E and ν change. Constant strain is exact
 // for linear tets; what is left is Newton's tolerance.
-TEST(TissueChangePhysics, BarFindsItsNewEquilibrium) {
+TEST(TissueChangePhysics, BarFindsItsNewEquilibrium) {  // long
   const double L = 0.08, p = 40.0;
   const TetMesh mesh = box_mesh({.cells = {2, 2, 8}, .size = {0.02, 0.02, L}});
   Tissue tissue;
@@ -66,7 +66,7 @@ double half_period(test::Column& column, int crossings) {
 // Free vibration of a column: a modulus twice as large gives a frequency √2 times as high. The step is 1/300 of the
 // period, whose own error (ωh)²/24 = 2e-5 differs by a factor of two between the two; higher modes, which a change at
 // an arbitrary moment does not wake (both tissues have the same modes), are not there.
-TEST(TissueChangePhysics, TwiceTheModulusSoundsHigherByRootTwo) {
+TEST(TissueChangePhysics, TwiceTheModulusSoundsHigherByRootTwo) {  // long
   for (const Precision precision : {Precision::double_precision, Precision::single_precision}) {
     SimulationOptions o;
     o.precision = precision;
@@ -89,7 +89,7 @@ TEST(TissueChangePhysics, TwiceTheModulusSoundsHigherByRootTwo) {
 
 // The jump that is booked is that of ½ uᵀKu, and from there on the elastic energy of a linear tissue is the stored one of
 // the new modulus to rounding, at whatever moment of a vibration it changed.
-TEST(TissueChangePhysics, ElasticEnergyIsThatOfTheNewTissue) {
+TEST(TissueChangePhysics, ElasticEnergyIsThatOfTheNewTissue) {  // long
   SimulationOptions o = test::in_double();
   o.step = 1e-4;
   Tissue tissue;
@@ -132,7 +132,7 @@ Simulation stretched(const Tissue& tissue, const SimulationOptions& o) {
 // Branches go on from their stress at the moment of change with their new time, F_v(t) = F_v(t_c) e^(−(t − t_c)/τ'), whatever
 // the modulus; elastic force follows the modulus at once; a branch that is new starts without stress and, where nothing
 // moves, stays so.
-TEST(TissueChangePhysics, MaxwellStressIsKept) {
+TEST(TissueChangePhysics, MaxwellStressIsKept) {  // long
   for (const Precision precision : {Precision::double_precision, Precision::single_precision}) {
     for (const bool large : {false, true}) {
       SimulationOptions o;
@@ -162,7 +162,7 @@ TEST(TissueChangePhysics, MaxwellStressIsKept) {
 }
 
 // A region whose neighbour goes to a tissue without lanes, which moves the whole body in double, keeps its Maxwell stress.
-TEST(TissueChangePhysics, MaxwellStressSurvivesAnotherEngine) {
+TEST(TissueChangePhysics, MaxwellStressSurvivesAnotherEngine) {  // long
   const TetMesh mesh = test::two_regions();
   Tissue plain, relaxing, without_lanes;
   relaxing.maxwell = {{0.5, 0.5}};
@@ -186,7 +186,7 @@ TEST(TissueChangePhysics, MaxwellStressSurvivesAnotherEngine) {
 }
 
 // Values there and back between two steps leave the bytes, where a given step keeps out what an automatic one remembers.
-TEST(TissueChangePhysics, ThereAndBackLeavesTheBytes) {
+TEST(TissueChangePhysics, ThereAndBackLeavesTheBytes) {  // long
   const TetMesh mesh = test::two_regions();
   for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
     for (const std::size_t k : {0, 1, 2, 3, 4, 6, 7}) {
@@ -209,7 +209,7 @@ TEST(TissueChangePhysics, ThereAndBackLeavesTheBytes) {
 }
 
 // The bytes do not depend on threads, over a change of values and one that lays submeshes out anew.
-TEST(TissueChangePhysics, HasTheSameBytesOnAnyNumberOfThreads) {
+TEST(TissueChangePhysics, HasTheSameBytesOnAnyNumberOfThreads) {  // long
   const TetMesh mesh = box_mesh({.cells = {10, 10, 12}, .size = {0.1, 0.1, 0.12}});
   std::optional<std::uint64_t> hash;
   for (const int threads : {1, 2, 5}) {
@@ -234,7 +234,7 @@ TEST(TissueChangePhysics, HasTheSameBytesOnAnyNumberOfThreads) {
 
 // On a body that was cut and thinned, a change gives what the body of the new tissue gives that was cut and thinned: sums
 // over elements go in another order, which float shows as its rounding.
-TEST(TissueChangePhysics, ActsOnWhatIsLeftOfTheBody) {
+TEST(TissueChangePhysics, ActsOnWhatIsLeftOfTheBody) {  // long
   const TetMesh mesh = test::two_regions();
   const std::vector<Tissue> all = test::kinds();
   std::vector<Triangle> cut;
@@ -278,7 +278,7 @@ TEST(TissueChangePhysics, ActsOnWhatIsLeftOfTheBody) {
 }
 
 // Masses follow the density at the velocities there are; mass scaling is made for the new tissue.
-TEST(TissueChangePhysics, MassesFollowTheDensity) {
+TEST(TissueChangePhysics, MassesFollowTheDensity) {  // long
   const TetMesh mesh = test::two_regions();
   Tissue tissue, heavy, stiff;
   heavy.density = 2500.0;

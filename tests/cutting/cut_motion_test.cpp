@@ -58,7 +58,7 @@ struct Squeezed {
 };
 
 // The block falls in two pieces, its energies balance, and what is left is a body built anew.
-TEST_P(CutsInMotion, PartTheBody) {
+TEST_P(CutsInMotion, PartTheBody) {  // long: *_in_double
   for (unsigned seed = 0; seed < 4; ++seed) {
     Squeezed block(GetParam(), seed);
     const double mass_before = mass(block.body);

@@ -102,7 +102,7 @@ INSTANTIATE_TEST_SUITE_P(All, AdaptivePrecision, testing::ValuesIn(kCases), name
 
 // The force of the dent, pressed in, held and let go again, beside that of the tissue's own law everywhere. Measured, of the peak:
 // 0.41, 0.32, 0.40, 0.68 and 0.36 %, with 75, 75, 58, 13 and 59 % of the tets linear in the mean.
-TEST_P(AdaptivePrecision, KeepsTheForce) {
+TEST_P(AdaptivePrecision, KeepsTheForce) {  // long
   Dented own(GetParam().tissue, single(), 0.1), chosen(GetParam().tissue, adaptive(), 0.1);
   double apart = 0.0, peak = 0.0, linear = 0.0, most = 0.0;
   int samples = 0;
@@ -119,7 +119,7 @@ TEST_P(AdaptivePrecision, KeepsTheForce) {
 }
 
 // The bytes do not depend on threads, nor on a stop in between, wherever the law is on its way in some submesh.
-TEST_P(AdaptivePrecision, HasTheSameBytesOnAnyThreadsAndAfterAStop) {
+TEST_P(AdaptivePrecision, HasTheSameBytesOnAnyThreadsAndAfterAStop) {  // long: Corotational, Ogden, Law, LawAndDrag
   SimulationOptions one = adaptive(), three = one;
   one.threads = 1, three.threads = 3;
   Dented a(GetParam().tissue, one, 0.02), b(GetParam().tissue, three, 0.02);
@@ -163,7 +163,7 @@ Vec3d pull_of(const TetMesh& mesh, const TetFields& fields, std::uint32_t vertex
 
 // The stress that is told is that of the forces, where the linear law is alone, where the laws are mixed and where it has no part:
 // it pulls the ground as the support holds it, at rest and while laws change.
-TEST_P(AdaptivePrecision, TellsTheStressOfTheForces) {
+TEST_P(AdaptivePrecision, TellsTheStressOfTheForces) {  // long
   Dented d(GetParam().tissue, adaptive());
   bool mixed = false;
   for (const double t : {0.05, 0.1, 0.11, 0.12, 0.13, 0.14, 0.15, 0.6}) {
@@ -183,7 +183,7 @@ TEST_P(AdaptivePrecision, TellsTheStressOfTheForces) {
 
 // Energies: the identity of the books is exact, and the elastic energy that they have is that of the laws in force: what time
 // integration makes of it apart. Measured: 1.4e-5 of what is stored, of Ogden's law no more than without (1.6e-3).
-TEST(AdaptivePrecisionEnergies, AreThoseOfTheLawsInForce) {
+TEST(AdaptivePrecisionEnergies, AreThoseOfTheLawsInForce) {  // long
   for (const Tissue& tissue : {corotational(), ogden()}) {
     Dented own(tissue, single(), 0.03), chosen(tissue, adaptive(), 0.03);
     double drift = 0.0, of_own = 0.0, most = 0.0, imbalance = 0.0;
@@ -220,7 +220,7 @@ std::pair<double, double> wrong_and_work(const Dented& d, const Tissue& tissue) 
 }
 
 // Held still, the linear law gets no more of the work wrong than it may, and all but as much as it may: the share is used.
-TEST(AdaptivePrecisionShare, IsKeptAndUsed) {
+TEST(AdaptivePrecisionShare, IsKeptAndUsed) {  // long
   for (const Tissue& tissue : {corotational(), ogden(), stiffening()}) {
     for (const double share : {0.001, 0.005, 0.02}) {
       Dented d(tissue, adaptive(share));
@@ -233,7 +233,7 @@ TEST(AdaptivePrecisionShare, IsKeptAndUsed) {
 }
 
 // At rest all is linear; a body in which everything deforms goes by its own law, and has the force of single precision.
-TEST(AdaptivePrecisionEverywhere, GoesByItsOwnLawWhereAllDeforms) {
+TEST(AdaptivePrecisionEverywhere, GoesByItsOwnLawWhereAllDeforms) {  // long
   double force[2];
   for (const bool chosen : {false, true}) {
     const TetMesh mesh = block();
@@ -252,7 +252,7 @@ TEST(AdaptivePrecisionEverywhere, GoesByItsOwnLawWhereAllDeforms) {
 
 // Tets that go, faces that part and a tissue that changes while the linear law is in force: nothing breaks, the force is that of the
 // same in single precision, and so are the books (measured: 1.3e-5 of what is stored).
-TEST_P(AdaptivePrecision, FollowsChangesOfTheBody) {
+TEST_P(AdaptivePrecision, FollowsChangesOfTheBody) {  // long: Corotational, Ogden, Law, LawAndDrag
   SimulationOptions o = adaptive(), plain = single();
   o.mesh_changes = plain.mesh_changes = true;
   Dented own(GetParam().tissue, plain), chosen(GetParam().tissue, o);

@@ -123,7 +123,7 @@ TEST(DragStages, StepGrowsWithTheSquareOfTheirNumber) {
 
 // Figure 3a, η = 1000 Pa·s: eight stages at 32 times the explicit step give its forces within 0.2 % of the peak from 5 ms on. Before,
 // the tool gets up to speed within 2 ms, seven of their steps: 4.4 % of the peak, where two stages, of 1.9 times the step, have 0.24 %.
-TEST(DragStages, FollowFigure3a) {
+TEST(DragStages, FollowFigure3a) {  // long
   const test::PressRun reference = test::figure3a({});
   const auto follow = [&](int stages, double at_the_start) {
     const test::PressRun staged = test::figure3a(in_stages(stages));

@@ -165,7 +165,7 @@ class PaperPress : public testing::TestWithParam<Law> {
 
 // The paper's mesh with physical mass is stable at the paper's step, whatever the law: every force of the balance is
 // there, and energy is accounted to the tolerance of Newton's method.
-TEST_P(PaperPress, IsStableAndBalancedAtTenMilliseconds) {
+TEST_P(PaperPress, IsStableAndBalancedAtTenMilliseconds) {  // long
   for (const TimeScheme scheme : {TimeScheme::backward_euler, TimeScheme::newmark}) {
     Simulation s(mesh, {{0, GetParam().tissue}}, options(scheme, 0.01));
     busy(s);
@@ -185,7 +185,7 @@ TEST_P(PaperPress, IsStableAndBalancedAtTenMilliseconds) {
 using MildPaperPress = PaperPress;
 
 // Small steps of the implicit schemes end where the explicit scheme does: the same equations, two ways.
-TEST_P(MildPaperPress, FollowsTheExplicitScheme) {
+TEST_P(MildPaperPress, FollowsTheExplicitScheme) {  // long
   SimulationOptions o = options(TimeScheme::newmark, 2.5e-4);
   Simulation implicit_run(mesh, {{0, GetParam().tissue}}, o);
   busy(implicit_run);

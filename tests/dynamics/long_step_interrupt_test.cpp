@@ -80,7 +80,7 @@ TEST_P(LongStepInterrupt, LeavesAllAsItWas) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, LongStepInterrupt,
+INSTANTIATE_TEST_SUITE_P(All, LongStepInterrupt,  // long
                          testing::Values(Case{"implicit", Integrator::implicit},
                                          Case{"iterated", Integrator::implicit, StaticBranches::automatic,
                                               Preconditioner::block_diagonal},
@@ -90,7 +90,7 @@ INSTANTIATE_TEST_SUITE_P(All, LongStepInterrupt,
 
 // From the answer to the end of the call there is no more than 1 s, whatever the step is at (ten times that beside other tests): 41 000
 // tets, whose step takes minutes.
-TEST(LongStepInterrupt, EndsSoon) {
+TEST(LongStepInterrupt, EndsSoon) {  // long
   for (const Preconditioner p : {Preconditioner::factorised, Preconditioner::block_diagonal}) {
     Simulation body = pressed({"", Integrator::quasi_static, StaticBranches::automatic, p}, 19);
     const auto begin = Clock::now();

@@ -76,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(Precisions, SameBytes,
                          });
 
 // On one to eight threads of its own, whether energies are kept or not; the body has several submeshes.
-TEST(SameBytesOnThreads, OneToEight) {
+TEST(SameBytesOnThreads, OneToEight) {  // long
   const TetMesh mesh = box_mesh({.cells = {9, 9, 18}, .size = {0.04, 0.04, 0.08}});
   SimulationOptions options;
   for (const bool track_energies : {false, true}) {

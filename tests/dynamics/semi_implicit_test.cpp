@@ -57,7 +57,7 @@ INSTANTIATE_TEST_SUITE_P(SemiImplicit, Limit,
 // Figure 3a with η = 1000 Pa·s: at its automatic step, near the elastic h*, forces are those of the explicit scheme's 9 µs
 // within 1 % of their peak from 5 ms on, and a simulated second costs a tenth or less. Measured: 0.6 %, and 20 to 30 times
 // less. Before, the tool gets up to speed within one of its steps, whose force is 21 % of the peak off.
-TEST(SemiImplicit, FollowsFigure3aAtATenthOfTheCost) {
+TEST(SemiImplicit, FollowsFigure3aAtATenthOfTheCost) {  // long
   const test::PressRun semi = test::figure3a(semi_implicit()), reference = test::figure3a({});
   const double apart = test::apart(semi, reference), start = test::apart_at_the_start(semi, reference);
   RecordProperty("apart_percent_of_peak", std::to_string(100.0 * apart));
@@ -117,7 +117,7 @@ std::vector<Law> laws() {
 class Laws : public testing::TestWithParam<Law> {};
 
 // A deep press with gravity, load and damping stays stable and its books exact, in float and in double, whatever the law.
-TEST_P(Laws, DeepPressIsStableAndBalanced) {
+TEST_P(Laws, DeepPressIsStableAndBalanced) {  // long
   for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
     SimulationOptions o = semi_implicit();
     o.precision = precision;

@@ -296,7 +296,7 @@ TEST_P(StateWalk, LeavesNoTrace) {
 }
 
 INSTANTIATE_TEST_SUITE_P(First, StateWalk, testing::Range(0U, 2U));
-INSTANTIATE_TEST_SUITE_P(All, StateWalk, testing::Range(2U, 100U));  // make verify
+INSTANTIATE_TEST_SUITE_P(All, StateWalk, testing::Range(2U, 100U));  // verify
 
 }  // namespace
 }  // namespace glisson::state_walk_test

@@ -199,7 +199,7 @@ std::vector<Law> laws() {
 }
 // The viscous matrix of tissue of large strain grows with its stretch, and where viscosity is what limits the step, so does
 // what has to be kept below: a block pulled by a half goes on at the speed of its top and comes to rest.
-TEST(AutomaticStep, FollowsTheViscosityOfStretchedTissue) {
+TEST(AutomaticStep, FollowsTheViscosityOfStretchedTissue) {  // long
   for (const Kinematics kinematics : {Kinematics::corotational, Kinematics::green}) {
     Tissue tissue;
     tissue.kinematics = kinematics;
@@ -226,7 +226,7 @@ class DeepPress : public testing::TestWithParam<Law> {};
 // A block pressed to 40 % of its height at 0.1 m/s does not blow up at an automatic step, explicit, nor implicit: the
 // energy in it never exceeds what the plate has put in. Tets may turn inside out and say so; laws with exponents reach forces
 // at which a stable step is microseconds, and it is taken.
-TEST_P(DeepPress, NeverBlowsUp) {
+TEST_P(DeepPress, NeverBlowsUp) {  // long
   for (const Integrator integrator : {Integrator::central_difference, Integrator::implicit}) {
     SimulationOptions o;
     o.integrator = integrator;

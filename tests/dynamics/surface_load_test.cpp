@@ -101,7 +101,7 @@ TEST(SurfaceLoad, FollowingPressureShrinksABall) {
 
 // A thick shell of nearly incompressible rubber blown up to 30 % hoop strain inside bears
 //   p = μ/2 [ (4/b + 1/b⁴) − (4/a + 1/a⁴) ],   a, b the stretches inside and outside.
-TEST(SurfaceLoad, FollowingPressureBlowsUpAShell) {
+TEST(SurfaceLoad, FollowingPressureBlowsUpAShell) {  // long
   const double mu = 1000.0, inside = 0.01, outside = 0.02, a = 1.3;
   const double b = std::cbrt(1.0 + (a * a * a - 1.0) * std::pow(inside / outside, 3));
   const auto part = [](double x) { return 4.0 / x + 1.0 / (x * x * x * x); };
@@ -229,7 +229,7 @@ TEST(SurfaceLoad, FoundationSwingsAsAnOscillator) {
 
 // The ledger closes with the work of every kind of load and of a tool that turns, and its elastic energy is the stored one
 // W(u): what is left of both is below a thousandth of the work of tools and loads.
-TEST(SurfaceLoad, LedgerClosesWithTheStoredEnergy) {
+TEST(SurfaceLoad, LedgerClosesWithTheStoredEnergy) {  // long
   const Tissue tissue = neo_hookean(2000.0, 10000.0);
   const double pi = std::numbers::pi;
   for (const Integrator integrator : test::every_integrator()) {
@@ -290,7 +290,7 @@ TEST(SurfaceLoad, AVertexNamedTwiceCountsOnce) {
 }
 
 // A moment twists a round bar by M L / (G J), within the mesh's error; no rigid motion is loaded.
-TEST(SurfaceLoad, MomentTwistsARoundBar) {
+TEST(SurfaceLoad, MomentTwistsARoundBar) {  // long
   CylinderOptions bar;
   bar.radius = 0.01, bar.height = 0.006, bar.radial_cells = 12, bar.axial_cells = 16;
   const TetMesh mesh = cylinder_mesh(bar);

@@ -93,7 +93,7 @@ Vec3d nearby(const Vec3d& r, const Vec3d&) { return (r * 2.0 - Vec3d{1.0, 1.0, 1
 class Scrambled : public testing::TestWithParam<Law> {};
 
 // Every vertex anywhere in the block: half of the tets are inside out. Back at rest to 1e-6 of its size.
-TEST_P(Scrambled, RecoversFromAnywhere) {
+TEST_P(Scrambled, RecoversFromAnywhere) {  // long
   const Outcome end = let_go(GetParam().tissue, 7, anywhere);
   EXPECT_GT(end.inverted_at_start, 250U);
   EXPECT_EQ(end.status, StepStatus::ok);
@@ -112,7 +112,7 @@ TEST_P(Jumbled, RecoversFromACellAway) {
 
 // A hyperelastic body comes back from anywhere as a rule, and not always: a fold of tets that all have J > 0 can be an
 // equilibrium of the true energy. Of 20 seeds 19 or 20 come back (docs/integrators.md); of these three, two at least.
-TEST(Hyperelastic, RecoversFromAnywhereAsARule) {
+TEST(Hyperelastic, RecoversFromAnywhereAsARule) {  // long
   for (const Law& law : {Law{"neo_hookean", hyperelastic(NeoHookean{.mu = mu(), .bulk_modulus = kappa()})},
                          Law{"ogden", hyperelastic(Ogden{.mu = {mu()}, .alpha = {-4.7}, .bulk_modulus = kappa()})}}) {
     int back = 0;
@@ -134,7 +134,7 @@ Tissue fung() { return hyperelastic(Fung{.mu = mu(), .b = 1.0, .bulk_modulus = k
 
 // Fung's exponent is some hundreds at the start. Its limit keeps the sums of forces their digits: no seed ends without a
 // balance, where 6 of 18 did with a limit of 60, and most come back: 15 of 20, of these 4.
-TEST(Fung, ComesBackFromAnywhereMoreOftenThanNot) {
+TEST(Fung, ComesBackFromAnywhereMoreOftenThanNot) {  // long
   int back = 0;
   for (unsigned seed = 1; seed <= 5; ++seed) {
     const Outcome end = let_go(fung(), seed, anywhere);
@@ -163,7 +163,7 @@ TEST(Green, IsAtRestInTheMirror) {
 
 // What has no way back by itself has one with a stand-in: let go as corotational tissue, which comes back from anywhere, and
 // given its own when at rest. Rest is rest to every law.
-TEST(StandIn, BringsBackWhatHasNoWayBack) {
+TEST(StandIn, BringsBackWhatHasNoWayBack) {  // verify
   for (const Tissue& tissue : {with(Kinematics::green), nearly_incompressible(), fung()}) {
     for (unsigned seed = 7; seed <= 8; ++seed) {
       Simulation s = placed(with(Kinematics::corotational), seed, anywhere);
@@ -177,7 +177,7 @@ TEST(StandIn, BringsBackWhatHasNoWayBack) {
 
 // St Venant-Kirchhoff comes to rest with most tets inside out, and nearly incompressible tissue stays folded: equilibria of
 // their energies. Steps are made, nothing flies off, and inverted tets are reported.
-TEST(Folded, GreenAndStiffBulkEndInAnEquilibrium) {
+TEST(Folded, GreenAndStiffBulkEndInAnEquilibrium) {  // long
   for (const Tissue& tissue : {nearly_incompressible(), with(Kinematics::green)}) {
     const Outcome end = let_go(tissue, 7, anywhere);
     EXPECT_LE(end.status, StepStatus::inverted);
@@ -271,7 +271,7 @@ Press press_barrel(const Tissue& tissue, Integrator integrator) {
 
 // A round body pressed to 40 % of its height between two narrow plates ends the press under every law, explicit in
 // single precision and implicit, and the energy balance holds: to rounding, and to Newton's tolerance.
-TEST_P(Barrel, IsPressedBySixtyPercent) {
+TEST_P(Barrel, IsPressedBySixtyPercent) {  // long; verify: gent, veronda*, invariants
   for (const Integrator integrator : {Integrator::central_difference, Integrator::implicit}) {
     SCOPED_TRACE(integrator == Integrator::central_difference ? "explicit" : "implicit");
     const Press end = press_barrel(GetParam().tissue, integrator);

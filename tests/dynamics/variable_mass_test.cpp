@@ -64,7 +64,7 @@ TEST(VariableMass, KeepsTheStepAndTheForceAtRest) {
 
 // A plate that comes slowly meets the forces of the plain body; one that hits the tissue makes steps as short as that has, and one
 // between the two steps in between: measured 0.82 of what was asked for, where mass was given up altogether before, 0.46.
-TEST(VariableMass, StepsAreShortWhereInertiaShows) {
+TEST(VariableMass, StepsAreShortWhereInertiaShows) {  // long
   SimulationOptions o;
   o.damping_rate = 50.0;
   const SimulationOptions heavy = at_four_fifths(test::paper_mesh(), stiffening(), o);
@@ -211,7 +211,7 @@ TEST(VariableMass, GoesOnThroughChangesOfTheBody) {
 
 // Steps longer than the body at rest bears: elements get what they lack, by stiffness, by viscosity at once and in stages. A slow press
 // meets the force of the plain body in a quarter of its steps; what is left of it at rest rings, as only its own mass is damped.
-TEST(VariableMass, StepsAreLongerThanAtRest) {
+TEST(VariableMass, StepsAreLongerThanAtRest) {  // long
   const TetMesh mesh = test::paper_mesh();
   for (const auto& [viscosity, stages] : {std::pair{0.0, 1}, {3.0, 1}, {30.0, 3}}) {
     Tissue tissue = stiffening();
@@ -258,7 +258,7 @@ TEST(VariableMass, BearsAsMuchInertiaAsAsked) {
 
 // Tissue without damping that swings on its own has never more energy than at first. With velocities that stay where mass comes it had
 // 1.16 times as much, and 1.7 times where the step grew by a tenth in each.
-TEST(VariableMass, DoesNotFeedASwing) {
+TEST(VariableMass, DoesNotFeedASwing) {  // long
   const TetMesh mesh = test::paper_mesh();
   Tissue tissue;
   tissue.hyperelastic = Fung{.mu = tissue.lame().mu, .b = 5.0, .bulk_modulus = 20.0 * tissue.lame().mu};
@@ -282,7 +282,7 @@ TEST(VariableMass, DoesNotFeedASwing) {
 
 // Mass that comes has no weight: tissue sags as far as without it, its ground bears its own weight, and the books are exact; in float
 // and in double, with viscosity at once and in stages, from supports that hold all and from a press that holds some.
-TEST(VariableMass, HasNoWeight) {
+TEST(VariableMass, HasNoWeight) {  // long
   const TetMesh mesh = test::paper_mesh();
   for (const auto& [precision, stages] : {std::pair{Precision::single_precision, 1},
                                           {Precision::double_precision, 1},
@@ -321,7 +321,7 @@ TEST(VariableMass, HasNoWeight) {
 
 // Any law, pressed to 40 % of the height at 0.1 m/s: the energy in the body never exceeds what the plate has put in.
 class DeepPressOfHeavyTets : public testing::TestWithParam<int> {};
-TEST_P(DeepPressOfHeavyTets, NeverBlowsUp) {
+TEST_P(DeepPressOfHeavyTets, NeverBlowsUp) {  // long
   Tissue tissue;
   const double mu = tissue.lame().mu, kappa = tissue.lame().lambda + 2.0 / 3.0 * mu;
   switch (GetParam()) {

@@ -124,7 +124,7 @@ std::vector<Tissue> conservative() {
 
 // Times that fall by the deformation to a thousandth of the step, and times that rise from there: by the step that the engine
 // chooses, the branches take energy from a free vibration at all times and give none, and it is a part of what there was.
-TEST(TimeLawLanes, TheStableStepHolds) {
+TEST(TimeLawLanes, TheStableStepHolds) {  // long
   for (Tissue t : conservative()) {
     for (const TimeLaw& law : std::initializer_list<TimeLaw>{
              ExponentialTime{.rate = -300.0, .least = 1e-6}, ExponentialTime{.rate = 300.0, .most = 1e6},
@@ -148,7 +148,7 @@ TEST(TimeLawLanes, TheStableStepHolds) {
 
 // A body pressed, held and let go: what its tools gave is stored, moving or lost to branches, step by step, and what the
 // branches have taken when all is at rest again was lost.
-TEST(TimeLawLanes, ACycleKeepsItsEnergyLedger) {
+TEST(TimeLawLanes, ACycleKeepsItsEnergyLedger) {  // long
   Tissue t;
   t.hyperelastic = NeoHookean{.mu = 1500.0, .bulk_modulus = 8000.0};
   t.maxwell_part = MaxwellPart::deviator;

@@ -231,7 +231,7 @@ ParameterResult modulus_of(const Press& p) {
 
 // A slope changes nothing of the modulus: with the same noise it is that of the flat file, within its interval and what the touch's own
 // standard deviation makes of it in both files, 1.5 δ/d of F ∝ d^1.5. Without the slope it was 12 times too small.
-TEST(Baseline, TheModulusIsThatOfTheFlatFile) {
+TEST(Baseline, TheModulusIsThatOfTheFlatFile) {  // long
   const Press level = pressed(1e-3, 0.0, 0.003, 6);
   const ParameterResult flat = modulus_of(level);
   ASSERT_TRUE(flat.ci95());

@@ -68,7 +68,7 @@ Scatter scatter(std::size_t n, double rho, int experiments, int bootstraps, Loss
 
 // The true scatter of 400 experiments is known to 1/√800 = 3.5 %, the variance that 60 bootstraps of 6 curves say (5 degrees
 // of freedom: √(2/5) each) to 8 %, its root to 4 %: 5.4 % together, and three times that is allowed.
-TEST(Bootstrap, ScattersAsNewExperimentsDo) {
+TEST(Bootstrap, ScattersAsNewExperimentsDo) {  // long
   const Scatter s = scatter(6, 0.0, 400, 60);
   std::printf("6 repetitions: true sd %.5f, bootstrap %.5f\n", s.truth, s.bootstrap);
   EXPECT_NEAR(s.bootstrap / s.truth, 1.0, 0.16);
@@ -76,7 +76,7 @@ TEST(Bootstrap, ScattersAsNewExperimentsDo) {
 
 // One curve: residuals in blocks. Blocks of three correlation times lose Σ 2k ρ^k / (τ · 3τ) of the variance, 12 % at ρ = 0.6
 // (τ = 4), 6 % of the sd; a correlation time from 60 samples is itself known to a third.
-TEST(Bootstrap, ScattersInBlocksOfOneCurve) {
+TEST(Bootstrap, ScattersInBlocksOfOneCurve) {  // long
   const Scatter white = scatter(1, 0.0, 400, 40), slow = scatter(1, 0.6, 400, 40);
   std::printf("one curve: white %.5f / %.5f, rho 0.6 %.5f / %.5f\n", white.truth, white.bootstrap, slow.truth,
               slow.bootstrap);
@@ -85,7 +85,7 @@ TEST(Bootstrap, ScattersInBlocksOfOneCurve) {
 }
 
 // A robust loss cannot be weighed: its curves are doubled instead, and scatter as they should.
-TEST(Bootstrap, ScattersUnderARobustLoss) {
+TEST(Bootstrap, ScattersUnderARobustLoss) {  // long
   const Scatter s = scatter(6, 0.0, 400, 60, {LossKind::huber, 1.5});
   std::printf("robust: true sd %.5f, bootstrap %.5f\n", s.truth, s.bootstrap);
   EXPECT_NEAR(s.bootstrap / s.truth, 1.0, 0.16);

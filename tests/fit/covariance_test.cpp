@@ -131,7 +131,7 @@ TEST(Covariance, TellsAModelThatFails) {
 }
 
 // What white noise pays for a correlation that is looked for: intervals wider by 12 % of 60 samples, which hold the truth.
-TEST(Covariance, WidensLittleUnderWhiteNoise) {
+TEST(Covariance, WidensLittleUnderWhiteNoise) {  // long
   double held = 0.0, wider = 0.0;
   constexpr int kSeeds = 300;
   CovarianceOptions independent;
@@ -171,7 +171,7 @@ double coverage(std::size_t copies, double rho, double between, std::optional<No
 
 // Residuals that swing (ρ = 0.8: nine samples count as one) fool the plain formula: its intervals hold the truth in half the
 // seeds. The corrected ones hold it in 90 % or more: of 300 seeds at a true 95 %, the share is below 0.905 once in 3000.
-TEST(Covariance, CoversTheTruthUnderSlowResiduals) {
+TEST(Covariance, CoversTheTruthUnderSlowResiduals) {  // verify
   const double naive = coverage(2, 0.8, 0.0, NoiseKind::independent, 0),
                corrected = coverage(2, 0.8, 0.0, std::nullopt, 0);
   const double one = coverage(1, 0.8, 0.0, std::nullopt, 1000);
@@ -182,7 +182,7 @@ TEST(Covariance, CoversTheTruthUnderSlowResiduals) {
 }
 
 // Repetitions that differ by themselves: the plain formula is far too sure, the sandwich over curves is not.
-TEST(Covariance, CoversTheTruthWhereCurvesDiffer) {
+TEST(Covariance, CoversTheTruthWhereCurvesDiffer) {  // verify
   const double naive = coverage(5, 0.0, 0.2, NoiseKind::independent, 0),
                chosen = coverage(5, 0.0, 0.2, std::nullopt, 0);
   std::printf("between curves: naive %.3f, chosen %.3f\n", naive, chosen);

@@ -79,7 +79,7 @@ FitResult fit_of(const std::string& key, double high, Grip grip) {
 
 // Curves made with friction 0.15, and with adhesion of 300 Pa, and μ = 2000 Pa give them back, each within 1 %: the shape of
 // the curve tells them apart.
-TEST(FrictionFit, FindsGripAndModulus) {
+TEST(FrictionFit, FindsGripAndModulus) {  // long
   const FitResult rubs = fit_of("specimen.friction", 0.5, {.friction = 0.15});
   ASSERT_EQ(rubs.parameters.size(), 2u);
   EXPECT_NEAR(rubs.parameters[0].value, 2000.0, 20.0);
@@ -162,7 +162,7 @@ HeldOut fit_phantoms(Faces faces, const std::string& mix, int first, int second)
 }
 
 // To 65 % strain, held-out curves are met within 1.3 times the best that the repetitions allow.
-TEST(FrictionFit, MeetsHeldOutPhantomsTo65Percent) {
+TEST(FrictionFit, MeetsHeldOutPhantomsTo65Percent) {  // long
   if (!phantom::have_phantoms()) GTEST_SKIP() << phantom::kPhantoms << " is not there";
   for (const char* mix : {"100T", "75T"}) {
     const HeldOut h = fit_phantoms(Faces::friction, mix, 4, 5);
@@ -172,7 +172,7 @@ TEST(FrictionFit, MeetsHeldOutPhantomsTo65Percent) {
 
 // The same over all ten splits of both mixes, together and one by one. In one split of EF10 75T the curves held out by chance
 // lie within 0.02 kPa of the mean of the others, where the law's own misfit shows: 0.06 kPa of a stress of 40.
-TEST(FrictionFitLong, MeetsEveryHeldOutPairOfPhantomsTo65Percent) {
+TEST(FrictionFitLong, MeetsEveryHeldOutPairOfPhantomsTo65Percent) {  // verify
   if (!phantom::have_phantoms()) GTEST_SKIP() << phantom::kPhantoms << " is not there";
   const double kPa = 1e3 * std::numbers::pi * 0.025 * 0.025;  // in newtons
   for (const char* mix : {"100T", "75T"}) {

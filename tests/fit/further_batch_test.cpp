@@ -126,7 +126,7 @@ Tally tally(std::uint64_t first, std::uint64_t families) {
 
 // Sixty families of five batches of five: the optimum of the next batch lies within in nine of ten or more (95 % are said; 54 of 60 or
 // more have a probability of 0.97), where the interval of the mean holds it in half of them at most.
-TEST(FurtherBatchFamilies, MeetTheNextOfSixty) {
+TEST(FurtherBatchFamilies, MeetTheNextOfSixty) {  // verify
   const Tally t = tally(1000, 60);
   for (int p = 0; p < 2; ++p) {
     EXPECT_GE(t.batch[p], 54);

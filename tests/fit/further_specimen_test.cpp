@@ -99,7 +99,7 @@ class Mix {
   std::vector<std::vector<ParameterResult>> own_;
 };
 
-TEST(FurtherSpecimen, IsMetByThoseThatWereNotFitted) {
+TEST(FurtherSpecimen, IsMetByThoseThatWereNotFitted) {  // long
   if (!phantom::have_phantoms()) GTEST_SKIP() << phantom::kPhantoms << " is not there";
   Tally parameters, forces;
   for (const char* scene : {"phantom_ef10_100t.toml", "phantom_ef10_75t.toml"}) {

@@ -95,7 +95,7 @@ TEST(IndentationCreep, ElasticIsTheClosedForms) {
 // a constant force it is F J(t)/J(0), with the creep function of one branch of share g and time τ in closed form,
 // 1 + g/(1 − g) (1 − exp(−(1 − g) t/τ)); of a Kelvin–Voigt tissue 1 − exp(−t/λ), λ = η/μ. Of a ball F goes with d^(3/2), of a cone
 // with d², of a punch with d. 0.7 % of the load is left, of the ball on its mesh: 1 %.
-TEST(IndentationCreep, IsTheCreepFunctionOfLeeAndRadok) {
+TEST(IndentationCreep, IsTheCreepFunctionOfLeeAndRadok) {  // long
   Tissue elastic;
   elastic.hyperelastic = NeoHookean{1000.0, 1e7};
   Tissue relaxing = elastic, viscous = elastic;
@@ -153,7 +153,7 @@ TEST(IndentationCreep, RefusesWhatItCannotFollow) {
 
 // Between the laws that were solved forces are those of their own solution within 1 % of the largest and 0.3 % in the mean, as
 // much as a finer mesh would change them, and no more laws are solved than the table has nodes.
-TEST(Indentation, TableKeepsForcesBetweenLaws) {
+TEST(Indentation, TableKeepsForcesBetweenLaws) {  // long
   Curve curve;
   curve.name = "made";
   const Motion m = ramp_and_hold(2e-3, 0.0);
@@ -233,7 +233,7 @@ std::string made(const Tissue& tissue, const Indenter& indenter, const Layer& la
 
 // Twenty starts, profiles and 200 replicates of a law, a share and a time from one ramp and hold: the truth is found within the
 // intervals, in less than 30 s of one processor.
-TEST(IndentationFit, FindsItsTwin) {
+TEST(IndentationFit, FindsItsTwin) {  // long
   Tissue truth = brain(600.0, -9.0);
   truth.maxwell = {{0.45, 8.0}};
   const phantom::Folder folder;
@@ -262,7 +262,7 @@ TEST(IndentationFit, FindsItsTwin) {
 
 // A force-controlled file, force over time and depth as a machine writes them, with noise of 0.5 %: from a load of 20 mN in 1 s, held
 // for a minute, the law's modulus, share and time are found within their intervals.
-TEST(IndentationFit, FindsTheTwinOfACreep) {
+TEST(IndentationFit, FindsTheTwinOfACreep) {  // long
   Tissue truth = brain(600.0, -5.0);
   truth.maxwell = {{0.45, 8.0}};
   std::vector<double> times, forces;

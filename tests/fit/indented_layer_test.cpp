@@ -58,7 +58,7 @@ Rounded rounded_punch(double a, double b, double rho) {
 
 // A rounded edge: contact begins on the face and spreads over the edge as far as Sneddon's equations say, 1.5 % of force at every
 // depth beyond a hundredth of the radius: what three elements over the edge resolve.
-TEST(IndentedLayer, RoundedPunchOnAHalfSpaceIsSneddons) {
+TEST(IndentedLayer, RoundedPunchOnAHalfSpaceIsSneddons) {  // long
   const double rho = 0.2 * kRadius, face = kRadius - rho;
   const Indenter punch{.shape = IndenterShape::flat, .radius = kRadius, .edge_radius = rho};
   IndentedLayer body({}, punch, neo_hooke(0.49), 0.04 * kRadius);
@@ -71,7 +71,7 @@ TEST(IndentedLayer, RoundedPunchOnAHalfSpaceIsSneddons) {
 
 // A sharp frictionless punch ends at a depth of a quarter of its radius or so; one with an edge of a tenth of it goes to 0.6 of its
 // radius in a thick layer, to 0.3 in one as thick as it is wide, 1 % whatever the mesh.
-TEST(IndentedLayer, RoundedPunchGoesWhereASharpOneCannot) {
+TEST(IndentedLayer, RoundedPunchGoesWhereASharpOneCannot) {  // long
   const Indenter punch{.shape = IndenterShape::flat, .radius = kRadius, .edge_radius = 0.1 * kRadius};
   for (const Layer& layer : {Layer{}, Layer{.thickness = 2e-3}}) {
     for (const HyperelasticLaw& law :
@@ -125,7 +125,7 @@ TEST(IndentedLayer, ScalesAndJoinsTheHalfSpace) {
 
 // Elements smaller by a third change no force by more than 1.5 % (a sharp punch, 2 %), at 30 % of the thickness (a punch, 20 %) and
 // with laws that stiffen forty times.
-TEST(IndentedLayer, IsConvergedInItsMesh) {
+TEST(IndentedLayer, IsConvergedInItsMesh) {  // long
   const Layer layer{.thickness = 2e-3};
   const std::vector<HyperelasticLaw> laws{NeoHookean{kMu, 1e6}, Ogden{{kMu}, {-10.0}, 1e6}, Yeoh{500, 300, 300, 1e6}};
   const std::vector<Indenter> indenters{{IndenterShape::sphere, kRadius, 0.0, IndenterContact::frictionless},

@@ -90,7 +90,7 @@ bootstrap = 0
 
 // Quasi-linear branches: the least squares of one Ogden term and two branches leave R² 0.73, 0.41 and 0.90 of three depths.
 // Along the same ramp, 1 % of height a second to a stretch of 0.9, the specimens carry 0.163, 0.300 and 0.255 kPa.
-TEST(LaboratoryFit, ThreeDepthsOfMuscleShareNoQuasiLinearLaw) {
+TEST(LaboratoryFit, ThreeDepthsOfMuscleShareNoQuasiLinearLaw) {  // long
   const FitResult r = run_fit(parse_fit(kQuasiLinear, test::shipped("scenes/fit/quasi_linear.toml").string()), {});
   ASSERT_EQ(r.tests.size(), 3u);
   const double expected[]{0.73, 0.41, 0.90};
@@ -107,7 +107,7 @@ TEST(LaboratoryFit, ThreeDepthsOfMuscleShareNoQuasiLinearLaw) {
 }
 
 // Branches whose times follow the strain as powers of it meet all three depths with R² of 0.90 and more, by eight numbers.
-TEST(LaboratoryFit, ThreeDepthsOfMuscleShareTimesThatFollowTheStrain) {
+TEST(LaboratoryFit, ThreeDepthsOfMuscleShareTimesThatFollowTheStrain) {  // long
   FitSpec spec = load_fit(test::shipped("scenes/fit/muscle_hold.toml"));
   spec.search.starts = 2;
   const FitResult r = run_fit(spec, {});
@@ -118,7 +118,7 @@ TEST(LaboratoryFit, ThreeDepthsOfMuscleShareTimesThatFollowTheStrain) {
 }
 
 // By name the law of one Ogden term comes before all others of one number or two.
-TEST(LaboratoryFit, CortexPrefersOgden) {
+TEST(LaboratoryFit, CortexPrefersOgden) {  // long
   FitOptions options;
   options.laws = {"neo_hookean", "mooney_rivlin", "fung", "veronda_westmann", "ogden", "ogden2"};
   FitSpec spec = load_fit(test::shipped("scenes/fit/brain_cortex.toml"));
@@ -235,7 +235,7 @@ bootstrap = 0
 }
 
 // Of all laws of at most two terms one is above 0.985 in each of cortex's tests.
-TEST(LaboratoryFit, AFewTermsAreFoundForCortex) {
+TEST(LaboratoryFit, AFewTermsAreFoundForCortex) {  // long
   FitOptions options;
   options.discover = 2;
   FitSpec spec = load_fit(test::shipped("scenes/fit/brain_cortex.toml"));

@@ -199,7 +199,7 @@ void PrintTo(const Kind& k, std::ostream* out) { *out << k.name; }
 class LaboratoryTwins : public testing::TestWithParam<Kind> {};
 
 // 2 % of the largest number as correlated noise. Three tests of one specimen are no three specimens.
-TEST_P(LaboratoryTwins, AreHeldByTheirIntervals) { expect_covered(GetParam().twins(), {}, false); }
+TEST_P(LaboratoryTwins, AreHeldByTheirIntervals) { expect_covered(GetParam().twins(), {}, false); }  // verify
 INSTANTIATE_TEST_SUITE_P(Tests, LaboratoryTwins,
                          testing::Values(Kind{"three_tests", three_tests},
                                          Kind{"equibiaxial_and_planar", equibiaxial_and_planar},
@@ -209,7 +209,7 @@ INSTANTIATE_TEST_SUITE_P(Tests, LaboratoryTwins,
                          [](const auto& i) { return std::string(i.param.name); });
 
 // Four specimens for each of three tests, whose stiffness differs by 10 % from one to the next: intervals are of their mean.
-TEST(LaboratorySpecimens, MeanIsHeldByItsInterval) {
+TEST(LaboratorySpecimens, MeanIsHeldByItsInterval) {  // verify
   expect_covered(three_tests(), {.specimens = 4, .between = 0.1, .noise = 0.01, .first_seed = 1000}, true);
 }
 

@@ -10,7 +10,7 @@
 namespace glisson::fit {
 namespace {
 
-TEST(LiverVelocity, FittedAtOneSpeedPredictsOthers) {
+TEST(LiverVelocity, FittedAtOneSpeedPredictsOthers) {  // long
   FitSpec spec = load_fit(test::shipped("scenes/fit/liver_velocity.toml"));
   spec.search.starts = 1;
   spec.proof.profiles = false;

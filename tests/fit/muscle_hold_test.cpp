@@ -77,7 +77,7 @@ bootstrap = 0
 next = false
 )";
 
-TEST(MuscleHold, HasIntervalsThatTheCurvesEnd) {
+TEST(MuscleHold, HasIntervalsThatTheCurvesEnd) {  // long
   if (!std::filesystem::exists(kFolder)) GTEST_SKIP() << kFolder << " is not there";
   const phantom::Folder folder;
   for (const char* depth : {"10", "20"}) {

@@ -131,9 +131,9 @@ void require(double misfit_part, double noise_part) {
   }
 }
 
-TEST(Population, IsCoveredByALawThatFits) { require(0.0, 0.01); }
-TEST(Population, IsCoveredByALawThatMisfitsALittle) { require(0.02, 0.01); }
-TEST(Population, IsCoveredUnderMuchNoise) { require(0.0, 0.05); }
+TEST(Population, IsCoveredByALawThatFits) { require(0.0, 0.01); }             // verify
+TEST(Population, IsCoveredByALawThatMisfitsALittle) { require(0.02, 0.01); }  // verify
+TEST(Population, IsCoveredUnderMuchNoise) { require(0.0, 0.05); }             // verify
 
 }  // namespace
 }  // namespace glisson::fit::population_test

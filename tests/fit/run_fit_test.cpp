@@ -73,7 +73,7 @@ bootstrap = 0
 
 // With noise of 2 % of the largest force the truth is inside the 95 % intervals in at least 90 of 100 seeds. Of 100 draws
 // with probability 0.95 fewer than 90 come once in 90 times; the seeds are fixed.
-TEST_F(RunFit, HoldsTheTruthWithinItsIntervals) {
+TEST_F(RunFit, HoldsTheTruthWithinItsIntervals) {  // long
   constexpr double kMu = 2500.0, kAlpha = -6.0;
   const FitSpec fit = spec(kOgdenFit);
   const double noise = 0.02 * kArea * std::abs(ogden_stress(kMu, kAlpha, 0.5));

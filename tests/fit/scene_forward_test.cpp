@@ -298,7 +298,7 @@ std::vector<double> made_with(const std::string& name) {
 
 // The shipped curves are the shipped scene at the parameters that their header names, and 2 % of noise: with 150 points its
 // rms is known to 6 %, and three of these are allowed.
-TEST(SceneModel, GivesTheShippedCurves) {
+TEST(SceneModel, GivesTheShippedCurves) {  // long
   SceneText scene = scene_text(test::shipped("scenes/fit/liver_container.toml").string());
   scene.variant = "slow";
   const std::vector<Curve> curves{shipped("2mm_s_1", 0.002), shipped("6mm_s_2", 0.006), shipped("10mm_s_3", 0.01)};

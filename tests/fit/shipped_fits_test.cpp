@@ -44,7 +44,7 @@ TEST(ParameterUnits, AreThoseOfTheKeysEnd) {
 }
 
 // F = 0.0158 N/mm² d² leaves 0.049 N rms on these points. Three steps of one start are enough to be below it.
-TEST(ShippedFits, NeedleMeetsThePointsBeforeThePuncture) {
+TEST(ShippedFits, NeedleMeetsThePointsBeforeThePuncture) {  // long
   FitSpec fit = load_fit(kFits / "bovine_needle.toml");
   fit.search.starts = 1;
   fit.search.most_iterations = 3;

@@ -79,7 +79,7 @@ void expect_covered(const Coverage& c) {
   }
 }
 
-TEST(Twin, IsCoveredUnderWhiteNoise) {
+TEST(Twin, IsCoveredUnderWhiteNoise) {  // verify
   const Coverage c = coverage({});
   print("2 % white", c);
   expect_covered(c);
@@ -87,7 +87,7 @@ TEST(Twin, IsCoveredUnderWhiteNoise) {
   EXPECT_LT(c.profile[0] + c.profile[1], 2.0);
 }
 
-TEST(Twin, IsCoveredUnderSlowNoise) {
+TEST(Twin, IsCoveredUnderSlowNoise) {  // verify
   Recipe recipe;
   recipe.rho = 0.8;
   const Coverage c = coverage(recipe);
@@ -96,7 +96,7 @@ TEST(Twin, IsCoveredUnderSlowNoise) {
 }
 
 // One curve of 80 samples with nine counting as one is worth nine samples: the least that is asked of the correction.
-TEST(Twin, IsCoveredByOneSlowCurve) {
+TEST(Twin, IsCoveredByOneSlowCurve) {  // verify
   Recipe recipe;
   recipe.copies = 1;
   recipe.rho = 0.8;
@@ -106,7 +106,7 @@ TEST(Twin, IsCoveredByOneSlowCurve) {
 }
 
 // Repetitions whose stiffness scatters by 10 %: the optimum is their mean, known as such.
-TEST(Twin, IsCoveredWhereRepetitionsDiffer) {
+TEST(Twin, IsCoveredWhereRepetitionsDiffer) {  // verify
   Recipe recipe;
   recipe.copies = 5;
   recipe.between = 0.1;
@@ -117,7 +117,7 @@ TEST(Twin, IsCoveredWhereRepetitionsDiffer) {
 
 // Plain percentiles over six repetitions hold the truth in 88 %, for they stand in for normal quantiles; widened to Student's
 // with five degrees of freedom they have to hold it in 90 %. 100 seeds at a true 95 % have an sd of 2.2 %.
-TEST(Twin, IsCoveredByTheBootstrap) {
+TEST(Twin, IsCoveredByTheBootstrap) {  // verify
   Recipe recipe;
   recipe.copies = 6;
   recipe.between = 0.1;
@@ -138,7 +138,7 @@ TEST(Twin, IsCoveredByTheBootstrap) {
 }
 
 // A robust loss with one sample in twenty far off: the intervals are still right, and narrower than those of squares.
-TEST(Twin, IsCoveredUnderARobustLoss) {
+TEST(Twin, IsCoveredUnderARobustLoss) {  // verify
   int inside[2] = {0, 0};
   double robust_width = 0.0, squares_width = 0.0;
   constexpr int kSeeds = 200;

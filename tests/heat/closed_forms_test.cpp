@@ -90,7 +90,7 @@ double line_front(double power, double time, const ThermalTissue& t) {
 }
 
 // A line that takes heat out of an infinite body: within 1 %.
-TEST(HeatClosedForms, LineSinkFront) {
+TEST(HeatClosedForms, LineSinkFront) {  // verify
   const std::map<double, double> known{{200.0, 6.81e-3}, {500.0, 12.793e-3}, {1000.0, 18.762e-3}};
   const double height = 2e-3;
   for (const auto& [power, radius] : known) {

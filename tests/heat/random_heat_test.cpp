@@ -59,7 +59,7 @@ TEST_P(RandomHeat, StaysBetweenWhatWasGiven) {
   }
 }
 INSTANTIATE_TEST_SUITE_P(First, RandomHeat, ::testing::Range(0, 3));
-INSTANTIATE_TEST_SUITE_P(All, RandomHeat, ::testing::Range(3, 100));
+INSTANTIATE_TEST_SUITE_P(All, RandomHeat, ::testing::Range(3, 100));  // verify
 
 }  // namespace
 }  // namespace glisson

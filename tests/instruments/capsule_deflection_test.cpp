@@ -66,13 +66,13 @@ std::vector<Vec3d> pressed(const Sheet& s, double p) {
 }
 
 // The solver of the theory gives the known coefficient of w₀ = f (p a⁴/(E t))^⅓ for ν = 0.3: 0.653 in three digits.
-TEST(CapsuleDeflection, TheoryOfThePressedDisc) {
+TEST(CapsuleDeflection, TheoryOfThePressedDisc) {  // long
   for (const double p : {1e-6, 1e-3}) EXPECT_NEAR(depth_under_pressure(p, 0.3) / std::cbrt(p), 0.653, 0.001);
 }
 
 // Pressed to a depth of 3 % of its radius, where what the theory leaves out is of order (w/a)² = 0.1 %: the finest of three
 // meshes is within 0.2 %, each at least twice as near as the one before.
-TEST(CapsuleDeflection, PressedDisc) {
+TEST(CapsuleDeflection, PressedDisc) {  // long
   for (const double nu : {0.0, 0.3, 0.45}) {
     const double p = 1e-4, exact = depth_under_pressure(p, nu);
     double last = 1.0;
@@ -90,7 +90,7 @@ TEST(CapsuleDeflection, PressedDisc) {
 // with the load −F/(2πr) in place of −½ p r: (r² N'' + 3 r N') = −F²/(8π² N²), C³ = 9 F²/(64 π²), w' = −F/(2π C r^⅓), and
 // the rim does not move. The depth of the middle converges as r^{2/3} under the load, so the mesh is graded to it: the
 // finest of three is within 3 %.
-TEST(CapsuleDeflection, PointLoad) {
+TEST(CapsuleDeflection, PointLoad) {  // long
   const double force = 1e-5, exact = std::cbrt(3.0 * force / std::numbers::pi);
   double last = 1.0;
   for (const std::size_t rings : {4u, 8u, 16u}) {

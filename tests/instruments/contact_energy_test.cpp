@@ -80,7 +80,7 @@ struct Throw {
 
 // A thousand throws against any shape with any friction; after some steps the tool is taken away, so
 // that the books, which are kept half a kick behind, are closed. What it has done is not above zero but for rounding.
-TEST(ContactEnergy, IsNeverCreated) {
+TEST(ContactEnergy, IsNeverCreated) {  // long
   std::mt19937 random(20261121);
   int touched = 0, corrected = 0, crushed = 0;
   for (int n = 0; n < 1000; ++n) {

@@ -48,7 +48,7 @@ double force_at_rest(const Rest& c, int stages) {
 
 // The ball stands still on tissue that has come to rest: the force is that of one stage, closely with two, and lower with more, as
 // points under the ball go for a step with the lumped mass alone.
-TEST_P(StagesBesideABall, FindTheForceAtRest) {
+TEST_P(StagesBesideABall, FindTheForceAtRest) {  // long: 1, 2, 3
   const double one = force_at_rest(GetParam(), 1);
   const auto expect = [&](int stages, double apart) {
     const double force = force_at_rest(GetParam(), stages);
@@ -103,7 +103,7 @@ Course course(int stages) {
 
 // What a needle holds, stages leave as it is: four give the force, the puncture and the dissipation of one. Left out are 20 ms around the
 // puncture, where the tissue springs back.
-TEST(DragStages, FollowANeedle) {
+TEST(DragStages, FollowANeedle) {  // long
   const Course one = course(1);
   double peak = 0.0;
   for (const double f : one.force) peak = std::max(peak, std::abs(f));

@@ -61,7 +61,7 @@ SimulationOptions heavy(SimulationOptions o, double times) {
 // on the way are those without within 2 % of the peak (1.2 and 1.5 measured; inertia of 2.5 % is borne). Held there, the sheet's added mass
 // goes on swinging: its force is within 1 % of the plain one at every step (0.3 measured), and the mean of half a second, in which the swing
 // has no share, within 1e-4 (1.3e-5 measured).
-TEST(HeavyCapsule, StepsAreThoseOfTheTissue) {
+TEST(HeavyCapsule, StepsAreThoseOfTheTissue) {  // long
   SimulationOptions o;
   o.damping_rate = 50.0;
   for (const double stiffening : {0.0, 5.0}) {

@@ -37,7 +37,7 @@ double measured(const HertzMesh& m, Integrator integrator = Integrator::central_
 }
 
 // Three meshes come closer, from above as displacement elements do: 5.1, 3.6, 2.1 % were measured.
-TEST(Hertz, ForceConverges) {
+TEST(Hertz, ForceConverges) {  // long
   double before = 0.15;
   for (const HertzMesh& m : {HertzMesh{3, 4, 1.5}, HertzMesh{4, 6, 1.35}, HertzMesh{8, 12, 1.19}}) {
     const double error = measured(m) - 1.0;

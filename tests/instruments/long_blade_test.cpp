@@ -88,7 +88,7 @@ class LongBlade : public testing::TestWithParam<Run> {};
 
 // Through cells of 5 mm, in steps in which the edge passes 0.05 to 2 mm: the mean force of the cut is the explicit scheme's within 1 %,
 // and so is G times the width within 3 %; the work of the cut is G times its area, and the ledger closes.
-TEST_P(LongBlade, CutsAsInTheExplicitScheme) {
+TEST_P(LongBlade, CutsAsInTheExplicitScheme) {  // long: Semi*, *1ms, *5ms, *Viscous*, Static10ms, Implicit40ms
   const Cut& o = GetParam().own;
   Cut short_steps = o;
   short_steps.integrator = Integrator::central_difference, short_steps.h = 0.0;
@@ -124,7 +124,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 // Tissue that yields to less than G l is carried along and not cut: at rest the force is the explicit scheme's, nothing has gone to
 // fracture, and it stays so.
-TEST(LongBladeForce, CarriesWhatItDoesNotCut) {
+TEST(LongBladeForce, CarriesWhatItDoesNotCut) {  // long
   Cut o{.integrator = Integrator::central_difference, .h = 0.0, .toughness = 1e3, .depth = 0.006};
   const auto at_rest = [](Downstroke& run, double time) {
     while (run.body.time() < time - 1e-9) {
@@ -238,7 +238,7 @@ const std::vector<Cut> kEach{{},
                              {.integrator = Integrator::semi_implicit, .h = 0.0, .viscosity = 10.0}};
 
 // A run that was saved in the middle of a cut goes on with the same bytes.
-TEST(LongBladeCheckpoint, GoesOn) {
+TEST(LongBladeCheckpoint, GoesOn) {  // long
   for (const Cut& o : kEach) {
     Downstroke a(o), b(o);
     a.cut(0.0, 0.012);
@@ -257,7 +257,7 @@ TEST(LongBladeCheckpoint, GoesOn) {
 }
 
 // The same bytes on one thread and on two.
-TEST(LongBladeThreads, GiveTheSameBytes) {
+TEST(LongBladeThreads, GiveTheSameBytes) {  // long
   Cut o = kEach.back();
   Downstroke one(o);
   o.threads = 2;
@@ -269,7 +269,7 @@ TEST(LongBladeThreads, GiveTheSameBytes) {
 }
 
 // A blade that is pushed: less than G times the width presses it in, more cuts. It is as deep as under the explicit scheme, within 2 %.
-TEST(LongBladePushed, GoesAsDeepAsInTheExplicitScheme) {
+TEST(LongBladePushed, GoesAsDeepAsInTheExplicitScheme) {  // long
   for (const double force : {0.15, 0.25}) {
     const auto depth = [&](const Cut& o) {
       Simulation s(Downstroke::mesh(), {{0, Downstroke::tissue(o.viscosity)}}, Downstroke::options(o));
@@ -340,7 +340,7 @@ struct RandomCut {
 class RandomLongBlade : public testing::TestWithParam<unsigned> {};
 
 // Sixty cuts, turning, in and half of the way back: every number is finite, a step that is not made says why, and the ledger closes.
-TEST_P(RandomLongBlade, SaysWhatItDoesNotDo) {
+TEST_P(RandomLongBlade, SaysWhatItDoesNotDo) {  // long: 1, 2, 3
   int refused = 0;
   double cut = 0.0;
   for (unsigned seed = 15 * GetParam(); seed < 15 * (GetParam() + 1); ++seed) {

@@ -149,7 +149,7 @@ struct Dented {
 // Dented at its middle, the sheet taut there and folded around: the force of `implicit` in steps of 25 ms and of statics in steps of
 // 50 ms is the explicit scheme's at rest within 1 %, dented by vertices or by a ball, whose contact is solved with the sheet; the ledger
 // closes. So is what is stored, but under the ball, which rests on a few triangles.
-TEST(LongCapsule, BearsAsInTheExplicitScheme) {
+TEST(LongCapsule, BearsAsInTheExplicitScheme) {  // long
   for (const bool by_ball : {false, true}) {
     Dented explicitly(Integrator::central_difference, 0.0, by_ball);
     test::advance_to(explicitly.body, 0.75);
@@ -178,7 +178,7 @@ TEST(LongCapsule, BearsAsInTheExplicitScheme) {
 // A slow dent that tears the sheet: the first tear of `implicit` and of statics is dated where that of the explicit scheme is, within
 // 1 % of the dent's time, though steps are 4 % of it, and to the 128th part of a step where its tension has reached the
 // strength. What the sheet released is counted, and the ledger closes.
-TEST(LongCapsule, TearsWithinAStep) {
+TEST(LongCapsule, TearsWithinAStep) {  // long
   constexpr double kStrength = 9.0;
   Dented explicitly(Integrator::central_difference, 0.0, false, kStrength);
   while (explicitly.capsule->events().empty() && explicitly.body.time() < 0.5)
@@ -214,7 +214,7 @@ TEST(LongCapsule, TearsWithinAStep) {
 }
 
 // A run that was saved while the sheet tears goes on with the same bytes.
-TEST(LongCapsule, ContinuesFromACheckpoint) {
+TEST(LongCapsule, ContinuesFromACheckpoint) {  // long
   for (const Integrator integrator : {Integrator::implicit, Integrator::quasi_static}) {
     const auto made = [&] { return Dented(integrator, 0.05, false, 9.0); };
     Dented a = made(), b = made();

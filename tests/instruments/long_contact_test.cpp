@@ -111,7 +111,7 @@ class LongPress : public testing::TestWithParam<Press> {};
 // and in 12 of statics, and of the explicit scheme in its own step, within 1 %; held at one point a triangle, an edge of a fifth of a cell
 // was 7 to 18 % too soft. Under the block sweeps do not end: it took 295 s in the place of 39 while its forces went on changing. The ledger closes, contact takes no more than 5 % of the tools' work, and in statics the support takes
 // what the tool exerts.
-TEST_P(LongPress, HasTheForceOfTheExplicitScheme) {
+TEST_P(LongPress, HasTheForceOfTheExplicitScheme) {  // long; verify: *BallOnRubber, *BlockOnRubber
   const Press& c = GetParam();
   Tissue t = tissue();
   if (c.hyperelastic) t.hyperelastic = NeoHookean{.mu = 2000.0, .bulk_modulus = 8000.0};
@@ -163,7 +163,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 // Nearly incompressible tissue whose vertices share their volume changes: the force of the explicit scheme at rest, within 1 %. On cells
 // of 5 mm the two kinds of step are 4 % apart, implicit and quasi_static 0.05 %.
-TEST(LongContact, PressesTissueOfAveragedVolumeChanges) {
+TEST(LongContact, PressesTissueOfAveragedVolumeChanges) {  // long
   Tissue t = tissue();
   t.poisson_ratio = 0.49, t.volume_change = VolumeChange::average_nodal;
   const auto path = down(0.004, 0.2);
@@ -231,7 +231,7 @@ TEST(LongContact, SticksAndSlipsAsTheExplicitScheme) {
 
 // A punch bonded to what it touches, pressed in, pulled up and aside: where only bonds act (from 0.7 s on) its force is the explicit
 // scheme's within 1 % of the peak at any time and 1e-4 at rest; the ledger closes, and a run that was saved goes on with the same bytes.
-TEST(LongContact, PullsWhatIsBondedToIt) {
+TEST(LongContact, PullsWhatIsBondedToIt) {  // long
   const auto path = [](double time) {
     return Vec3d{0.003 * smooth(time, 0.3, 0.9), 0.0, 0.004 * smooth(time, 0.3, 0.9) - 0.002 * smooth(time, 0.0, 0.3)};
   };
@@ -266,7 +266,7 @@ TEST(LongContact, PullsWhatIsBondedToIt) {
 
 // A ball that rubs is dragged over the slab and back: within 5 % of the largest force in steps of 20 ms. It rests on few triangles; against
 // the explicit scheme in steps of 0.1 ms the error is 3.3 %, in its own 3.7 %.
-TEST(LongContact, RubsAsTheExplicitScheme) {
+TEST(LongContact, RubsAsTheExplicitScheme) {  // long
   const auto path = [](double time) {
     return Vec3d{0.006 * (smooth(time, 0.5, 1.2) - smooth(time, 1.2, 1.9)), 0.0, -0.003 * smooth(time, 0.0, 0.5)};
   };
@@ -413,7 +413,7 @@ struct RandomPress {
 class RandomLongContact : public testing::TestWithParam<unsigned> {};
 
 // A hundred scenes, half of them in statics: every number is finite, steps that are not made say why, and the ledger closes.
-TEST_P(RandomLongContact, SaysWhatItDoesNotDo) {
+TEST_P(RandomLongContact, SaysWhatItDoesNotDo) {  // long: 1, 2, 3
   int refused = 0;
   for (unsigned seed = 25 * GetParam(); seed < 25 * (GetParam() + 1); ++seed) {
     const RandomPress c(seed);

@@ -58,7 +58,7 @@ class LongContainer : public testing::TestWithParam<ContainerOptions> {};
 
 // At rest, after 20 steps of 20 ms: the tool's force and the loads on bottom and side are the explicit scheme's in short steps within 1.5 % of
 // the force, and balance within 0.1 %. The ledger closes.
-TEST_P(LongContainer, BearsAsInTheExplicitScheme) {
+TEST_P(LongContainer, BearsAsInTheExplicitScheme) {  // long; verify: rough, friction
   Experiment reference(Integrator::central_difference, test::kShortStep, GetParam());
   reference.run_to(0.4);
   const double force = -reference.force();
@@ -134,7 +134,7 @@ TEST(LongContainerWeight, IsOnFloorAndWall) {
 }
 
 // A run that was saved goes on with the same bytes; tissue that bulges against a wall that bonds stays there, and is held from then on.
-TEST(LongContainerCheckpoint, GoesOn) {
+TEST(LongContainerCheckpoint, GoesOn) {  // long
   for (const bool bonded : {false, true}) {
     const auto made = [&] {
       return Experiment(Integrator::implicit, 0.02, test::with(0.0, false, bonded), bonded ? 0.02002 : 0.02);

@@ -91,7 +91,7 @@ class LongNeedle : public testing::TestWithParam<InAndOut> {};
 // explicit scheme's within 2 % of the peak at every step; events come at the same time within 1.5 ms or 15 µm, and the hand's work is
 // accounted for. Where D = 1.7 C, vibrations of a few ms that long steps do not have choose which rows stick again on the way out: there the
 // explicit force rises for moments by up to 9 % of the peak.
-TEST_P(LongNeedle, FollowsTheExplicitScheme) {
+TEST_P(LongNeedle, FollowsTheExplicitScheme) {  // long; verify: Implicit5ms, Implicit20msSticking
   const InAndOut& c = GetParam();
   const bool sticks = c.sticking > 1.0;
   test::Inserted explicitly = test::insert(insertion(Integrator::central_difference, 0.0, c.speed, c.sticking));
@@ -133,7 +133,7 @@ INSTANTIATE_TEST_SUITE_P(Steps, LongNeedle,
 
 // In statics the support takes what the needle exerts, at every step; and a needle that rubs without a rate finds its balance after
 // the puncture too.
-TEST(LongNeedleStatics, SupportTakesTheForce) {
+TEST(LongNeedleStatics, SupportTakesTheForce) {  // long
   test::Insertion o = insertion(Integrator::quasi_static, 0.02);
   o.needle.friction.viscous_in = o.needle.friction.viscous_out = 0.0;
   test::Inserted run = test::insert(o);
@@ -151,7 +151,7 @@ TEST(LongNeedleStatics, SupportTakesTheForce) {
 
 // A region's boundary and a membrane within hold the tip: both break at the explicit scheme's depths within 0.05 mm, and the tip
 // carries their forces there.
-TEST(LongNeedleEvents, InnerPuncturesAreFoundWithinAStep) {
+TEST(LongNeedleEvents, InnerPuncturesAreFoundWithinAStep) {  // long
   const auto made = [](Integrator integrator) {
     test::Insertion o = insertion(integrator, 0.01);
     o.strokes = {{.to = {0, 0, -0.019}, .velocity = 0.01, .ramp = 0.05, .rest = 0.1}};
@@ -193,7 +193,7 @@ TEST(LongNeedleEvents, InnerPuncturesAreFoundWithinAStep) {
 
 // A thin needle with a bevel bends, through a surface that is broken without a drop: its tip is where the explicit scheme has it within 3 % of the deflection, and what its bending
 // stores is in the books.
-TEST(LongNeedleBending, IsThatOfTheExplicitScheme) {
+TEST(LongNeedleBending, IsThatOfTheExplicitScheme) {  // long
   const auto made = [](Integrator integrator) {
     test::Insertion o = insertion(integrator, 0.005);
     o.strokes = {{.to = {0, 0, -0.02}, .velocity = 0.01, .ramp = 0.05, .rest = 0.3}};
@@ -214,7 +214,7 @@ TEST(LongNeedleBending, IsThatOfTheExplicitScheme) {
 }
 
 // Through a capsule: the puncture opens it once, however often the step of the puncture was tried.
-TEST(LongNeedleCapsule, IsOpenedOnce) {
+TEST(LongNeedleCapsule, IsOpenedOnce) {  // long
   for (const Integrator integrator : {Integrator::implicit, Integrator::quasi_static}) {
     test::Insertion o = insertion(integrator, 0.02);
     o.needle.rupture.force = 0.5;
@@ -238,7 +238,7 @@ TEST(LongNeedleCapsule, IsOpenedOnce) {
 }
 
 // A run that was saved within the tissue goes on with the same bytes.
-TEST(LongNeedleCheckpoint, GoesOn) {
+TEST(LongNeedleCheckpoint, GoesOn) {  // long
   for (const Integrator integrator : {Integrator::implicit, Integrator::quasi_static}) {
     const auto made = [&] { return test::insert(insertion(integrator, 0.02)); };
     test::Inserted a = made(), b = made();
@@ -266,7 +266,7 @@ TEST(LongNeedleRefusal, NamesWhatMovesIt) {
 
 // In, out and against the surface beside the hole: a run that is saved there goes on with the same bytes, explicitly too. The bent shape of the first
 // path was left over, and such a file refused.
-TEST(LongNeedle, ContinuesWhereItTouchesAgain) {
+TEST(LongNeedle, ContinuesWhereItTouchesAgain) {  // long
   for (const Integrator integrator : {Integrator::central_difference, Integrator::implicit}) {
     test::Insertion o = insertion(integrator, 0.005);
     o.strokes = {{.to = {0, 0, -0.008}, .velocity = 0.02, .ramp = 0.0, .rest = 0.0},
@@ -339,9 +339,9 @@ std::string name_of(const testing::TestParamInfo<std::tuple<Integrator, unsigned
 }
 
 constexpr auto kIntegrators = {Integrator::implicit, Integrator::quasi_static, Integrator::semi_implicit};
-INSTANTIATE_TEST_SUITE_P(Insertions, RandomLongNeedle,
+INSTANTIATE_TEST_SUITE_P(Insertions, RandomLongNeedle,  // long: *_1
                          testing::Combine(testing::ValuesIn(kIntegrators), testing::Range(0U, 2U)), name_of);
-INSTANTIATE_TEST_SUITE_P(Thousand, RandomLongNeedle,
+INSTANTIATE_TEST_SUITE_P(Thousand, RandomLongNeedle,  // verify
                          testing::Combine(testing::ValuesIn(kIntegrators), testing::Range(2U, 169U)), name_of);
 
 }  // namespace

@@ -118,7 +118,7 @@ class LongPush : public testing::TestWithParam<Integrator> {};
 
 // In every step (m + h c) v⁺ = m v + h (F + f) with F and f at its end, to 2e-4 of F; at rest the tissue bears F, the support takes it,
 // the ledger closes, and the depth is the explicit scheme's within 0.6 % (3.54 mm).
-TEST_P(LongPush, MovesByTheForceAtTheEndOfTheStep) {
+TEST_P(LongPush, MovesByTheForceAtTheEndOfTheStep) {  // long
   const double h = 0.01, m = 0.05, c = 5.0, most = 0.2;
   Pushed explicitly(Integrator::central_difference, 0.0, ball_of(), push_of(most, 0.2));
   test::advance_to(explicitly.body, 1.0);
@@ -145,7 +145,7 @@ INSTANTIATE_TEST_SUITE_P(Integrators, LongPush, testing::Values(Integrator::impl
 
 // A ball that rubs, pushed aslant and free to go aside, against the explicit scheme in short steps: depth within 2 % of the largest in steps of
 // 5 ms at all times, 0.6 % at the end.
-TEST(LongPush, GoesAsideAsTheExplicitScheme) {
+TEST(LongPush, GoesAsideAsTheExplicitScheme) {  // long
   PushMotion push = push_of(0.2, 0.2);
   push.direction = {1.0, 0.0, -3.0}, push.guided = false;
   Pushed explicitly(Integrator::central_difference, test::kShortStep, ball_of(0.3), push),
@@ -164,7 +164,7 @@ TEST(LongPush, GoesAsideAsTheExplicitScheme) {
 
 // In viscous tissue under `semi_implicit`, in steps of 0.5 ms: the explicit scheme's depth within 2 %; the same bytes on two threads, and
 // from a checkpoint.
-TEST(LongPush, ActsInViscousTissueUnderSemiImplicit) {
+TEST(LongPush, ActsInViscousTissueUnderSemiImplicit) {  // long
   const auto pushed = [](Integrator integrator, unsigned threads = 1) {
     return Pushed(integrator, 5e-4, ball_of(), push_of(0.2, 0.05), 100.0, threads);
   };
@@ -226,7 +226,7 @@ test::Insertion pushed_needle(Integrator integrator, double h, double force) {
 
 // A needle whose surface breaks at 0.3 N: pushed with less it does not go in, and lies as deep as under the explicit scheme (0.5 %); with
 // more it does, at the same time within 5 ms, and ends at its stop.
-TEST(LongPush, ANeedleGoesInByEnoughForce) {
+TEST(LongPush, ANeedleGoesInByEnoughForce) {  // long
   for (const Integrator integrator : {Integrator::implicit, Integrator::quasi_static}) {
     test::Inserted weak = test::insert(pushed_needle(integrator, 0.01, 0.25)),
                    strong = test::insert(pushed_needle(integrator, 0.01, 0.6)),

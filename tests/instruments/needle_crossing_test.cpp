@@ -85,7 +85,7 @@ LobeScene through_slab(Integrator integrator) {
 // Through a slab of 10 mm: from the exit on the force is friction on what of the shaft is in the slab as it is deformed, found by the test
 // from the surface at present; on the way out the same with the other sign until the tip comes back to the far side, then on the rest; and
 // 0 with the needle out. 3 %, of a thickness: points of the path are means over a zone of 4 mm.
-TEST_P(NeedleThrough, RubsOnTheShaftInTissueAlone) {
+TEST_P(NeedleThrough, RubsOnTheShaftInTissueAlone) {  // long
   const LobeScene o = through_slab(GetParam());
   test::Lobes run = far_slab(o);
   const std::vector<Triangle> surface = boundary_triangles(run.simulation.mesh());
@@ -122,7 +122,7 @@ TEST_P(NeedleThrough, RubsOnTheShaftInTissueAlone) {
 
 // Two lobes alike, 6 mm apart: two contacts, punctures and exits; the second puncture at the force of the first and after the same
 // indentation, and then friction on both. Out of both again, through both holes once more without a puncture, and the ledger closes.
-TEST_P(NeedleThrough, PiercesTwoLobesAlike) {
+TEST_P(NeedleThrough, PiercesTwoLobesAlike) {  // long
   LobeScene o;
   o.integrator = GetParam();
   o.strokes = {{.to = {0, 0, -0.0205}, .velocity = 0.04, .ramp = 0.0, .rest = 0.0},
@@ -211,7 +211,7 @@ TetMesh without(const TetMesh& mesh, const std::vector<std::uint32_t>& gone) {
 
 // A cavity of 6 mm within tissue has a rear wall: the needle comes out into the cavity, meets the wall 14 mm deep, pierces it at the force of
 // the surface, and rubs on both sides of the cavity alone.
-TEST(NeedleCavity, HasARearWall) {
+TEST(NeedleCavity, HasARearWall) {  // long
   LobeScene o;
   o.integrator = Integrator::implicit;
   o.strokes.front().to.z = -0.0185;
@@ -228,7 +228,7 @@ TEST(NeedleCavity, HasARearWall) {
 
 // Tissue that is removed around the shaft leaves what is above and below it: the needle stays in both, its tip too, with the friction of these
 // lengths alone, on the way in and out. Removed around the tip as well, the path ends above.
-TEST(NeedleCavity, MayBeMadeAroundTheShaft) {
+TEST(NeedleCavity, MayBeMadeAroundTheShaft) {  // long
   for (const bool and_below : {false, true}) {
     LobeScene o;
     o.integrator = Integrator::implicit;
@@ -265,7 +265,7 @@ TEST(NeedleCavity, MayBeMadeAroundTheShaft) {
 
 // Depths of membranes count from the first surface, gaps included: of those at 5, 10 and 16 mm the one in the gap holds nothing, and the last is
 // broken 2 mm deep in the second lobe.
-TEST(NeedleLobes, MembranesCountFromTheFirstSurface) {
+TEST(NeedleLobes, MembranesCountFromTheFirstSurface) {  // long
   LobeScene o;
   o.step = test::kShortStep;
   o.needle.membranes = {{.depth = 0.005, .puncture = 0.05, .cutting = {}},
@@ -287,7 +287,7 @@ TEST(NeedleLobes, MembranesCountFromTheFirstSurface) {
 }
 
 // Beyond its last point in tissue a bent needle is straight: the free tip deviates by the slope there, not by the deflection of that point.
-TEST(NeedleLobes, FreeEndIsStraight) {
+TEST(NeedleLobes, FreeEndIsStraight) {  // long
   LobeScene o;
   o.integrator = Integrator::quasi_static;
   o.needle.youngs_modulus = 200e9;
@@ -315,7 +315,7 @@ LobeScene in_and_out(Integrator integrator) {
 
 // Saved in the gap, on the second lobe, within it, on the way back before it and within the first, and outside, a run
 // goes on with the same bytes.
-TEST(NeedleLobes, CheckpointsGoOn) {
+TEST(NeedleLobes, CheckpointsGoOn) {  // verify
   for (const Integrator integrator : {Integrator::central_difference, Integrator::implicit}) {
     const LobeScene o = in_and_out(integrator);
     test::Lobes a = lobes(o);
@@ -338,7 +338,7 @@ TEST(NeedleLobes, CheckpointsGoOn) {
 }
 
 // Turned and moved as a whole, two lobes give the same force to 1e-6 of the largest at every step, and the same events.
-TEST(NeedleLobes, AreTheSameInAnyFrame) {
+TEST(NeedleLobes, AreTheSameInAnyFrame) {  // long
   const auto curve = [](const Pose& frame) {
     LobeScene o = in_and_out(Integrator::central_difference);
     o.frame = frame;

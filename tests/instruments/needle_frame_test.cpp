@@ -75,7 +75,7 @@ void expect_same(const Curve& a, const Curve& b, double share) {
 // In double to 1e-6 of the largest force at every step, what rounding leaves of 10 m beside 0.1 µm; in single precision to 1e-4. With
 // directions of the zones' rule along the axes of space the depth of the puncture was off by 2.5 %; and since the tip reaches the
 // surface here at the end of a step, rounding chose the step of the contact: 10 % of the largest force at single moments.
-TEST(NeedleFrame, TurnedOrMovedSceneIsTheSame) {
+TEST(NeedleFrame, TurnedOrMovedSceneIsTheSame) {  // long
   const double quarter = std::acos(0.0);
   const std::vector<Pose> frames{{{}, turn({1, 0, 0}, quarter)},
                                  {{}, turn({0, 0, 1}, 0.6 * quarter)},

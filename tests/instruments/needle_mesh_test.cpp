@@ -51,7 +51,7 @@ Insertion on_mesh(int radial, int axial) {
 // 0.59 to 0.35 of the zone's radius, force and plateau change by less than 3 %, the depth by 5 % (4.46, 4.52, 4.65 mm, 0.5 mm of it in
 // air). That is not the end: these cells are 1.7 times as long along the needle as across, and tets with volumes of their own lock. With
 // averaged volumes and cells as long as wide the tissue yields 4.62 mm on any mesh from 0.53 on (docs/needles.md).
-TEST(NeedleMesh, PunctureAndPlateauHoldOnThreeMeshes) {
+TEST(NeedleMesh, PunctureAndPlateauHoldOnThreeMeshes) {  // long
   std::array<Curve, 3> curves;
   const std::array<std::array<int, 2>, 3> cells{{{7, 10}, {9, 13}, {12, 17}}};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -71,7 +71,7 @@ TEST(NeedleMesh, PunctureAndPlateauHoldOnThreeMeshes) {
 }
 
 // Half the spacing of path points: the same force on the way in, to 2 %.
-TEST(NeedleMesh, SpacingOfThePathHardlyShows) {
+TEST(NeedleMesh, SpacingOfThePathHardlyShows) {  // long
   Insertion wide = on_mesh(6, 8), narrow = wide;
   narrow.needle.spacing = 0.5 * wide.needle.spacing;
   const Curve a = curve_of(wide), b = curve_of(narrow);
@@ -152,7 +152,7 @@ void record(Family family, int cells, const Indented& p) {
 
 // From edges of half a zone on (of regular tets of the same volume: 0.53, 0.43 and 0.36 zones in prisms, 0.50, 0.41, 0.35 in
 // cubes, whose sides are 0.44 to 0.31 zones: cubes of half a zone are off by 3.9 %), three meshes of two families: force within 2 %, indentation within 1 % (measured: 0.4 %).
-TEST(NeedleMesh, ForceAndIndentationAreThoseOfTheZone) {
+TEST(NeedleMesh, ForceAndIndentationAreThoseOfTheZone) {  // long
   for (const auto& [family, coarsest] : {std::pair{Family::prisms, 8}, std::pair{Family::cubes, 9}}) {
     const Indented finest = indent(family, coarsest + 4);
     record(family, coarsest + 4, finest);

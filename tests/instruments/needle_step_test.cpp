@@ -74,7 +74,7 @@ class NeedleStep : public ::testing::TestWithParam<AtSpeed> {};
 // A step sees the contact late by up to its way, v h, and its first force a step later: the depth is off by at most 1.6 v h, and
 // 0.1 %. The forces converge with h/τ, τ = 3 ms: 3 % for the force of the puncture and what follows, 6 % for the force of contact,
 // which jumps. With the speed taken up within a step, the reference at 500 mm/s had 50 N at contact.
-TEST_P(NeedleStep, PunctureAndPeaksAreThoseOfTheFinestStep) {
+TEST_P(NeedleStep, PunctureAndPeaksAreThoseOfTheFinestStep) {  // long
   const Puncture fine = puncture(GetParam().speed, GetParam().finest);
   for (const double step : GetParam().steps) {
     SCOPED_TRACE(step);
@@ -92,7 +92,7 @@ INSTANTIATE_TEST_SUITE_P(Speeds, NeedleStep,
                                            AtSpeed{0.5, 1e-6, {1e-4, 2e-5, 5e-6}}));
 
 // What is left of the speed is inertia: up to 50 mm/s the depth is that of the slow limit to 0.2 %, at 500 mm/s 15 % more.
-TEST(NeedleSpeed, ShowsAsInertiaOnly) {
+TEST(NeedleSpeed, ShowsAsInertiaOnly) {  // long
   const double slow = puncture(0.005, 5e-5).depth;
   EXPECT_NEAR(puncture(0.05, 5e-6).depth, slow, 2e-3 * slow);
   EXPECT_NEAR(puncture(0.5, 2e-6).depth, 1.15 * slow, 0.02 * slow);

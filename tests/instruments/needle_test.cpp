@@ -96,7 +96,7 @@ TEST(Needle, MeetsASurfaceThatIsCarriedAside) {
 
 // In steady cutting the tip bears the cutting force and the shaft C + b v per metre in tissue; the hand feels the sum, and
 // the container all of it. 1 % for what still swings.
-TEST(Needle, CutsAndRubsByTheLaw) {
+TEST(Needle, CutsAndRubsByTheLaw) {  // long
   Inserted run = insert({});
   const Means m = means(run, 1.6, 2.0);
   const double per_metre = 10.0 + 200.0 * 0.01;
@@ -163,7 +163,7 @@ TEST(Needle, GoesBackIntoItsHole) {
 
 // A membrane inside, at the boundary of two regions: the tip is held there until its puncture force, and what is behind it
 // is cut at its own force.
-TEST(Needle, PiercesInnerMembranes) {
+TEST(Needle, PiercesInnerMembranes) {  // long
   Insertion o;
   o.inner_boundary = 0.028;
   o.needle.regions[1] = {.cutting = 0.05, .puncture = 0.25};
@@ -218,7 +218,7 @@ TEST(Needle, ToughnessIsTheEnergySetFree) {
 }
 
 // Relaxing tissue lets go of a needle that rests; the force falls, and never rises again.
-TEST(Needle, ForceRelaxesWhenItRests) {
+TEST(Needle, ForceRelaxesWhenItRests) {  // long
   Insertion o;
   o.maxwell = {{.share = 0.5, .time = 0.2}};
   o.needle.rupture.force = 10.0;  // the surface holds
@@ -236,7 +236,7 @@ TEST(Needle, ForceRelaxesWhenItRests) {
 }
 
 // Faster is stiffer in relaxing tissue: the same depth needs more force.
-TEST(Needle, FasterNeedsMoreForce) {
+TEST(Needle, FasterNeedsMoreForce) {  // long
   double last = 0.0;
   for (const double velocity : {0.002, 0.006, 0.02}) {
     Insertion o;
@@ -277,7 +277,7 @@ std::pair<double, double> deflection_at_entry(const Needle& needle) {
 
 // A thin needle of steel bends where a rigid one does not, and a stiffer needle less. Where it enters the tissue its deflection is that of a
 // cantilever under the force and the moment that the hand bears.
-TEST(Needle, BendsUnderTheTissue) {
+TEST(Needle, BendsUnderTheTissue) {  // long
   double last = 0.01;
   for (const double diameter : {1.0e-3, 1.5e-3, 2.41e-3}) {
     Insertion o;
@@ -300,7 +300,7 @@ TEST(Needle, BendsUnderTheTissue) {
 }
 
 // A bevelled tip steers a needle that bends, to the side it points to, and no rigid one.
-TEST(Needle, BevelSteers) {
+TEST(Needle, BevelSteers) {  // long
   const auto aside = [](double share, std::optional<double> modulus) {
     Insertion o;
     o.needle.diameter = 0.4e-3;

@@ -55,7 +55,7 @@ class PunchContact : public testing::TestWithParam<Punch> {};
 
 // Three meshes come closer from above, the finest is within 3 %: 2.3 % was measured, twice. Triangles that the punch's rim cuts
 // are held too, half a percent of the force.
-TEST_P(PunchContact, ConvergesToTheExactForce) {
+TEST_P(PunchContact, ConvergesToTheExactForce) {  // long
   const Punch p = GetParam();
   double before = 1.0;
   for (const int mesh : {1, 2, 3}) {
@@ -74,7 +74,7 @@ INSTANTIATE_TEST_SUITE_P(Kappa, PunchContact,
 // Friction holds the surface from sliding in under the punch, which makes it stiffer, most so where ν = 0: the more of it the
 // more force, until nothing slips. Bonded is what driving the same vertices is; and no slip differs from it by the
 // vertices at the rim alone, which may lift off, and the triangles it cuts: below 1 %.
-TEST(PunchContactFriction, GoesFromFreeToBonded) {
+TEST(PunchContactFriction, GoesFromFreeToBonded) {  // long
   const Punch p{0.0, 1.0, 1.0, 1e-4};
   const double free = kappa_of(pressed(p, 1, 0.0), p), some = kappa_of(pressed(p, 1, 0.1), p),
                rough = kappa_of(pressed(p, 1, std::numeric_limits<double>::infinity()), p);
@@ -101,7 +101,7 @@ TEST(PunchContactFriction, GoesFromFreeToBonded) {
 
 // Under a flat punch the pressure is least in the middle and rises to the edge. Its integral over the present area is the force:
 // to rounding, as every vertex gives back what was divided by its own area, seen from the side to a percent.
-TEST(PunchContactPressure, RisesToTheEdgeAndAddsUp) {
+TEST(PunchContactPressure, RisesToTheEdgeAndAddsUp) {  // long
   const Punch p{0.30, 1.0, 2.4835, 1e-4};
   const test::PressedLayer run = pressed(p, 2, 0.0);
   const ContactPressure field = run.tool->contact_pressure();

@@ -83,7 +83,7 @@ test::Insertion insertion(Integrator integrator) {
 
 // In by 12 mm, at rest, and out, η = 100 Pa·s: the explicit scheme's force within 1.5 % of the peak outside 20 ms after events, these
 // within 1 ms, its work within 1 %, in a tenth of its steps; and the ledger closes.
-TEST(SemiImplicitNeedle, FollowsTheExplicitScheme) {
+TEST(SemiImplicitNeedle, FollowsTheExplicitScheme) {  // long
   int steps_of_reference = 0, steps = 0;
   const auto run = [](test::Inserted& r, int& count) {
     const auto step = [&] {
@@ -167,7 +167,7 @@ Curves curves(Pressed& p) {
 // A press in motion, part of whose force is viscous: that of `implicit` in steps of 0.5 ms within 1 % of the peak rms; the explicit
 // scheme's, whose force jumps where vertices come into contact, within 3 %, and its forces and loads at the end within 1 %. Bottom and side
 // do not push and pull against each other. The ledger closes.
-TEST_P(SemiImplicitContainer, BearsAsInTheExplicitScheme) {
+TEST_P(SemiImplicitContainer, BearsAsInTheExplicitScheme) {  // long
   Pressed reference(Integrator::central_difference, GetParam()), own(Integrator::semi_implicit, GetParam());
   const Curves exact = curves(reference), found = curves(own);
   Pressed implicitly(Integrator::implicit, GetParam());  // which finds contact in the same way
@@ -212,7 +212,7 @@ TEST(SemiImplicitCorner, IsNotHeldByOneWallAgainstTheOther) {
 
 // A capsule adds forces alone, beside a punch: the same, but that the explicit force jumps by a tenth where vertices meet the punch, and
 // at rest within 1.5 %.
-TEST(SemiImplicitCapsule, PullsAsInTheExplicitScheme) {
+TEST(SemiImplicitCapsule, PullsAsInTheExplicitScheme) {  // long
   const auto curve = [](Integrator integrator) {
     Pressed p(integrator, test::with(0.0, false, true));
     CapsuleOptions c;

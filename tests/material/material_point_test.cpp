@@ -289,7 +289,7 @@ TEST(MaterialPoint, IsTheSpecimenOfAFit) {
 }
 
 // The engine in double precision: a cube whose vertices move as F says pushes on its faces with P, of every tissue, after a history.
-TEST(MaterialPoint, IsABodyOfTets) {
+TEST(MaterialPoint, IsABodyOfTets) {          // long
   constexpr double kSpeed = 1.5, end = 0.06;  // 9 % of shear
   constexpr int steps = 600;
   const TetMesh mesh = box_mesh({.cells = {2, 2, 2}, .size = {0.02, 0.02, 0.02}});

@@ -2,7 +2,7 @@
 // precision of the body.
 #include <gtest/gtest.h>
 
-#include "dynamics/make_body.h"
+#include "dynamics/state/make_body.h"
 #include "element/tet_fields.h"
 #include "engine/moving_body.h"
 #include "material/every_tissue.h"

@@ -21,7 +21,7 @@ double step_of(const TetMesh& mesh, double viscosity, Integrator integrator) {
 }
 
 // Its search did not converge with drag taken off, and fell back to a seventh of it.
-TEST(LiverStep, SemiImplicitBearsViscosity) {
+TEST(LiverStep, SemiImplicitBearsViscosity) {  // long
   const std::filesystem::path file = test::shipped("../shared/data/meshes/liver.vtu");
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "the liver mesh is not here: " << file;
   TetMesh mesh = read_mesh(file.string()).mesh;

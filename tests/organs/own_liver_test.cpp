@@ -123,14 +123,14 @@ class OwnLiver : public test::InFolder {
 // As it is, mirrored and in millimetres: the needle comes within 5 mm of the middle of the body.
 TEST_F(OwnLiver, RunsAsItIs) { run(liver_, "as it is"); }
 
-TEST_F(OwnLiver, RunsMirroredInMillimetres) {
+TEST_F(OwnLiver, RunsMirroredInMillimetres) {  // long
   run(moved(liver_, [](const Vec3d& p) { return Vec3d{-1e3 * p.x, 1e3 * p.y, 1e3 * p.z}; }), "mirrored, mm");
 }
 
-TEST_F(OwnLiver, RunsCoarser) { run(coarser(liver_), "coarser"); }
+TEST_F(OwnLiver, RunsCoarser) { run(coarser(liver_), "coarser"); }  // long
 
 // The organ that a user without a file has is that of shapes.
-TEST_F(OwnLiver, RunsOfShapes) { run(liver_mesh({.edge = 0.015}).mesh, "of shapes"); }
+TEST_F(OwnLiver, RunsOfShapes) { run(liver_mesh({.edge = 0.015}).mesh, "of shapes"); }  // long
 
 // Turned at random, coarser or not.
 class OwnLiverTurned : public OwnLiver, public ::testing::WithParamInterface<unsigned> {};
@@ -138,8 +138,8 @@ TEST_P(OwnLiverTurned, Runs) {
   const TetMesh mesh = turned(GetParam() % 2 == 0 ? coarser(liver_) : liver_, GetParam());
   run(mesh, "turned " + std::to_string(GetParam()));
 }
-INSTANTIATE_TEST_SUITE_P(First, OwnLiverTurned, ::testing::Values(1U, 2U));
-INSTANTIATE_TEST_SUITE_P(All, OwnLiverTurned, ::testing::Range(3U, 13U));
+INSTANTIATE_TEST_SUITE_P(First, OwnLiverTurned, ::testing::Values(1U, 2U));  // long
+INSTANTIATE_TEST_SUITE_P(All, OwnLiverTurned, ::testing::Range(3U, 13U));    // verify
 
 }  // namespace own_liver_test
 }  // namespace glisson

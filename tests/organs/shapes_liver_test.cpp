@@ -60,7 +60,7 @@ TEST(ShapesLiver, IsPressed) {
 
 // The needle punctures the surface and then the tumour, which it pushes away before it by more than 2 mm and which comes
 // back by a part of that once it is pierced.
-TEST(ShapesLiver, MovesItsTumourAwayFromTheNeedle) {
+TEST(ShapesLiver, MovesItsTumourAwayFromTheNeedle) {  // long
   const Scene scene = test::shipped_scene("organs/liver_needle.toml", {{"mesh.edge_mm", "10"}});
   ProbedRecorder recorder("target_displacement_y_m");
   const std::atomic<bool> stop{false};

@@ -75,7 +75,7 @@ double relaxed(const Record& elastic, double time) {
 // A needle on the whole surface, which is not stuck to a capsule, is felt as the integral of the elastic force over its history says, within
 // 1 %, where all of the stress relaxes (measured: 0.75 % 0.3 s after the stop, 0.14 % from 5 s on). The shipped tissue's
 // deviator relaxes alone: at these strains its bulk bears a good part, and a fifth to a sixth less of the force at once is gone.
-TEST(BovineNeedleHeld, RelaxesByItsSharesAndTimes) {
+TEST(BovineNeedleHeld, RelaxesByItsSharesAndTimes) {  // long
   const Override bare{"capsule", "[]"};
   const Record elastic = pressed(0.4, {bare, {"tissue.maxwell", "[]"}});
   const Record all = pressed(40.0, {bare, {"tissue.maxwell_part", "all"}});
@@ -120,7 +120,7 @@ TwoBranches at_rest(const Record& run, double from, double until) {
 // The variant `held`, in by 38.9 mm, half a minute at rest and out again: at rest the force falls by its two times alone, within 1 % of what it
 // was (measured: 0.2 %), and by a fifth, most of it slowly, since the fast branch relaxes on the way in already. Without branches only the
 // viscous part of the friction goes. On the way out the needle is held back, and let go.
-TEST(BovineNeedleHeld, IsInsertedHeldAndWithdrawn) {
+TEST(BovineNeedleHeld, IsInsertedHeldAndWithdrawn) {  // verify
   const std::vector<Override> coarse{
       {"mesh.radial_cells", "5"}, {"mesh.axial_cells", "12"}, {"output.sample_rate_hz", "50"}};
   const double stop = 38.9 / 3.0;

@@ -205,7 +205,7 @@ void expect_whole_curve(const Curve& curve, const std::map<double, std::pair<dou
 
 // What the scene claims, on one run of it. The whole curve, of 371 points, is read from beside the checkout; that part is skipped
 // where it is missing.
-TEST(BovineNeedle, FollowsTheMeasuredCurve) {
+TEST(BovineNeedle, FollowsTheMeasuredCurve) {  // long
   const Scene scene = test::shipped_scene("needle/bovine_liver.toml", at_speed(3.0));
   Variant variant = scene.variants.front();
   variant.simulation.track_energies = false;
@@ -263,7 +263,7 @@ void record(const Cells& cells, const Curve& curve, double surface) {
 // The mesh resolves the zone: what is fitted belongs to the tissue. Against the finest of three meshes, of 43 200 to 93 312 tets, the
 // force 2 to 9 mm deep within 2 %, the indentations at 0.15, 0.5 and 1 N and at the puncture within 1.5 % (measured: 1.6 and 1.0 %). The
 // finest has 0.4 % more force than one of half as many tets again (docs/needles.md).
-TEST(BovineNeedle, IsTheSameOnFinerMeshes) {
+TEST(BovineNeedle, IsTheSameOnFinerMeshes) {  // verify
   const Cells finest{12, 36};
   const Curve fine = pressed_in(finest);
   record(finest, fine, kSurface);
@@ -286,7 +286,7 @@ TEST(BovineNeedle, IsTheSameOnFinerMeshes) {
 
 // Averaged volumes and a law with an energy: through four drops at ten times the measured speed, the work of the elastic forces
 // is W(u) to 1 %, and the tissue comes to rest. With a stiffness law of the form `secant` it would have given off 4 mJ more.
-TEST(BovineNeedle, GainsNoEnergyFromItsTissue) {
+TEST(BovineNeedle, GainsNoEnergyFromItsTissue) {  // verify
   std::vector<Override> overrides = ten_times_as_fast();
   overrides.push_back({"output.sample_rate_hz", "500"});
   overrides.push_back({"output.stored_energy", "true"});

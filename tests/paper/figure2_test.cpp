@@ -101,7 +101,7 @@ Staircase climb(Variant v) {
 // Tissue 1: the force grows by steps, and every step is made by tetrahedra that cross the threshold just then:
 // with the moduli of the moment before the force would have gone on smoothly. Shown under the damping of the
 // paper's time step; with less of it tets fall back across the threshold and the steps ring.
-TEST(Figure2, StepsOfTissue1AreTetsCrossingTheThreshold) {
+TEST(Figure2, StepsOfTissue1AreTetsCrossingTheThreshold) {  // long
   const Scene scene = test::shipped_scene("paper/figure2.toml");
   const Staircase stairs = climb(variant(scene, "tissue1_damped"));
   // between steps the force grows by 0.010 N at most in one time step, once the motion has started

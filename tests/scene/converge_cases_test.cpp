@@ -192,7 +192,7 @@ std::vector<Case> first_cases() {
   return first;
 }
 INSTANTIATE_TEST_SUITE_P(First, ConvergeCase, ::testing::ValuesIn(first_cases()), name_of);
-INSTANTIATE_TEST_SUITE_P(All, ConvergeCase, ::testing::ValuesIn(all_cases()), name_of);
+INSTANTIATE_TEST_SUITE_P(All, ConvergeCase, ::testing::ValuesIn(all_cases()), name_of);  // verify
 
 }  // namespace
 }  // namespace glisson

@@ -213,7 +213,7 @@ double complete_K(double k) {
 // at the bottom. By two conformal maps of the square to rectangles, with k = 1/√2 and k₁ = k sn(K/2) = k/√(1 + k'),
 //   F = μ T d K(k₁)/K(k₁').
 // The stress at the pad's edge is singular as 1/√r, as it is under any pad, so that the force falls with h.
-TEST(Converge, BracketsAPadInAntiplaneShear) {
+TEST(Converge, BracketsAPadInAntiplaneShear) {  // long
   const Scene scene = test::parse(std::string(R"([mesh]
 kind = "box"
 cells = [4, 1, 4]
@@ -277,7 +277,7 @@ TetMesh bend(int n, double w) {
 
 // Antiplane shear around the bend of a strip: by the map of Schwarz and Christoffel its corner is as long as 1 − 2 ln 2/π
 // squares, so that two arms of two squares give F = μ T d / (5 − 2 ln 2/π), but for e^(−4π). The mesh is given, and split.
-TEST(Converge, BracketsABendThatIsSplit) {
+TEST(Converge, BracketsABendThatIsSplit) {  // long
   const Scene scene = test::parse(std::string(R"([mesh]
 kind = "file"
 path = "bend.vtu"

@@ -1,5 +1,5 @@
 // No name of a scene can take the place of a file that a run writes, on any file system; what a run writes is known by name.
-#include "scene/run/result_names.h"
+#include "scene/parse/result_names.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -14,7 +14,7 @@
 
 #include "glisson/scene/surface_file.h"
 #include "glisson/surface_region.h"
-#include "mesh/implicit/surface_edges.h"
+#include "mesher/implicit/surface_edges.h"
 #include "scene/scene_text.h"
 #include "support/folder.h"
 #include "support/surface_files.h"
@@ -201,8 +201,9 @@ TEST_P(SurfacesAsTheyCome, AreMeshed) {
   EXPECT_GE(closed.doubled.size(), 38U);
   EXPECT_LE(closed.holes.size(), 25U);
 }
-INSTANTIATE_TEST_SUITE_P(First, SurfacesAsTheyCome, ::testing::Combine(::testing::Range(0, 3), ::testing::Values(1U)));
-INSTANTIATE_TEST_SUITE_P(All, SurfacesAsTheyCome,
+INSTANTIATE_TEST_SUITE_P(First, SurfacesAsTheyCome,  // long: 1, 2
+                         ::testing::Combine(::testing::Range(0, 3), ::testing::Values(1U)));
+INSTANTIATE_TEST_SUITE_P(All, SurfacesAsTheyCome,  // verify
                          ::testing::Combine(::testing::Range(0, 3), ::testing::Range(2U, 51U)));
 
 /// What a scene says of a surface of its.

@@ -20,7 +20,7 @@ SCRIPT = ROOT / "scripts/compare_programs"
 loader = importlib.machinery.SourceFileLoader("compare_programs", str(SCRIPT))
 script = importlib.util.module_from_spec(importlib.util.spec_from_loader("compare_programs", loader))
 loader.exec_module(script)
-from programs import PROGRAMS  # noqa: E402, models/ is on the path now
+from programs import PROGRAMS  # noqa: E402, studies/compare/ is on the path now
 
 try:
     from programs import experiment
@@ -87,7 +87,7 @@ class ComparePrograms(unittest.TestCase):
         self.assertEqual(rows[0]["wall_s"], 0.5)
         self.assertEqual([row["model"] for row in rows[1:]], [program.name for program in PROGRAMS])
         for row, program in zip(rows[1:], PROGRAMS):
-            self.assertTrue((ROOT / f"models/programs/{program.file}.py").exists())
+            self.assertTrue((ROOT / f"studies/compare/programs/{program.file}.py").exists())
             self.assertEqual(row["note"], f"not installed: pip install {program.pip}")
             self.assertIsNone(row["error_force"])
             self.assertIn(row["note"], text)

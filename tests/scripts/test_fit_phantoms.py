@@ -27,7 +27,7 @@ class FitPhantoms(unittest.TestCase):
     def test_errors_are_compared_over_one_range(self):
         if not RUNS.exists():
             self.skipTest(f"{RUNS} is not there: the phantoms' curves are not part of this repository")
-        presets = tomllib.loads((ROOT / "src/scene/build/preset_list.toml").read_text(encoding="utf-8"))["preset"]
+        presets = tomllib.loads((ROOT / "src/scene/parse/preset_list.toml").read_text(encoding="utf-8"))["preset"]
         page = (ROOT / "docs/tissues.md").read_text(encoding="utf-8")
         errors = errors_of_runs()
         self.assertEqual(len(errors), 4)

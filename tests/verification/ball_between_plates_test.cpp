@@ -66,7 +66,7 @@ PlatesError press_between_plates(double angle, double edges, const Lay& lay) {
 
 // The face in contact is flat to a ten-thousandth of the approach and pressed all over. A small contact is Hertz's: what the ball carries
 // beyond that falls with a/R, at ν = 0.45 in proportion to it (at 0.3 there is a part (a/R) ln (a/R) besides).
-TEST(BallBetweenPlates, SmallContactsAreHertz) {
+TEST(BallBetweenPlates, SmallContactsAreHertz) {  // long
   Tissue t = tissue(5000.0);
   double before = 0.0;
   for (const double nu : {0.3, 0.45}) {
@@ -92,7 +92,7 @@ TEST(BallBetweenPlates, SmallContactsAreHertz) {
 }
 
 // 4.2 % was measured with 21 700 tets.
-TEST(BallBetweenPlates, CarriesTheForceOfTheSeries) {
+TEST(BallBetweenPlates, CarriesTheForceOfTheSeries) {  // long
   const PlatesError e = press_between_plates(0.1, 2.5, kTurned);
   record("turned", e.mean());
   EXPECT_LT(e.tets, 23000u);
@@ -103,7 +103,7 @@ TEST(BallBetweenPlates, CarriesTheForceOfTheSeries) {
 
 // 1.74, 1.73 and 1.84 % were measured with 49 000, 48 800 and 49 200 tets, on three lattices turned against each other; Hertz's force is
 // 5.3 % below the exact one.
-TEST(GradedMeshMechanicsLong, BallBetweenPlatesIsWithinTwoPercentHoweverTheLatticeLies) {
+TEST(GradedMeshMechanicsLong, BallBetweenPlatesIsWithinTwoPercentHoweverTheLatticeLies) {  // long
   const Lay other{unit(Vec3d{-0.7, 0.2, 0.5}), {0.4e-3, 1.1e-3, -0.3e-3}};
   const std::array<PlatesError, 3> all{press_between_plates(0.1, 4.5, kLevel), press_between_plates(0.1, 4.5, kTurned),
                                        press_between_plates(0.1, 4.5, other)};

@@ -64,7 +64,7 @@ TEST_P(ConfinedColumn, RampHasTheViscousOverhead) {
 }
 
 // Creep under a constant load: ε = (σ/M) (1 − e^(−t M / M_v)).
-TEST_P(ConfinedColumn, CreepFollowsTheExponential) {
+TEST_P(ConfinedColumn, CreepFollowsTheExponential) {  // long
   const Tissue t = tissue();
   const double M = confined_modulus(t), M_v = confined_viscosity(t), load = 100.0;
   Column column(t, 0.006, 2, 1, {});  // short, so that inertia, ρ L² / 2 M_v = 9 to 14 µs, stays below 1e-4 of M_v / M

@@ -90,7 +90,7 @@ TEST(Energy, KineticEnergyIsThatOfTheVelocities) {
 }
 
 // An undamped linear body keeps its energy over a hundred thousand steps.
-TEST(Energy, FreeVibrationKeepsItsEnergy) {
+TEST(Energy, FreeVibrationKeepsItsEnergy) {  // long
   std::mt19937 random(2);
   const TetMesh mesh = box_mesh({.cells = {1, 1, 3}, .size = {0.01, 0.01, 0.03}});
   Simulation simulation(mesh, {{0, Tissue{}}}, test::in_double());
@@ -128,7 +128,7 @@ TEST(Energy, BalanceInFloat) {
 }
 
 // A million steps of 10 µs at 1 mm/s in float follow double to 0.1 %: no step is lost in a float's grain.
-TEST(Precision, MillionSmallStepsInFloatFollowDouble) {
+TEST(Precision, MillionSmallStepsInFloatFollowDouble) {  // long
   const TetMesh mesh = box_mesh({.cells = {1, 1, 2}, .size = {0.05, 0.05, 0.1}});
   std::vector<Simulation> runs;
   std::vector<ConstraintId> tools;

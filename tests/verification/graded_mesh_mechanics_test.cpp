@@ -16,7 +16,7 @@ RegionMeshOptions toward_the_hole(double edge, double finest) {
 }
 
 // Twice as fine inside as outside: −4.9 % inside was measured with 8800 tets, −2.6 % with 17 900.
-TEST(GradedMeshMechanics, ThickShellComesToLame) {
+TEST(GradedMeshMechanics, ThickShellComesToLame) {  // long
   const ShellErrors coarse = shell(toward_the_hole(0.012, 0.006), kLevel),
                     fine = shell(toward_the_hole(0.009, 0.0045), kLevel),
                     turned = shell(toward_the_hole(0.009, 0.0045), kTurned);
@@ -30,7 +30,7 @@ TEST(GradedMeshMechanics, ThickShellComesToLame) {
 }
 
 // −1.9 and −1.2 % were measured with 30 200 tets; one edge needs 50 400 for −1.9 and −1.5 %.
-TEST(GradedMeshMechanicsLong, ThickShellIsWithinTwoPercentWithFewerTets) {
+TEST(GradedMeshMechanicsLong, ThickShellIsWithinTwoPercentWithFewerTets) {  // long
   const ShellErrors s = shell(toward_the_hole(0.009, 0.0036), kLevel);
   record("inside", s.inside), record("outside", s.outside);
   EXPECT_LT(s.tets, 32000u);
@@ -91,7 +91,7 @@ RegionMeshOptions toward_the_poles(const HertzCaps& p, const Lay& lay) {
 }
 
 // −1.7 and −1.9 % were measured with 39 800 and 38 300 tets; 41 400 of one edge leave −3.0 %.
-TEST(GradedMeshMechanicsLong, BallUnderHertzPressureIsWithinTwoPercent) {
+TEST(GradedMeshMechanicsLong, BallUnderHertzPressureIsWithinTwoPercent) {  // long
   const HertzCaps p{0.4};
   const CapsError level = squeeze_caps(p, toward_the_poles(p, kLevel), kLevel),
                   turned = squeeze_caps(p, toward_the_poles(p, kTurned), kTurned),

@@ -122,7 +122,7 @@ double difference_from_intensity(const Choice& c) {
 // Measures that are of first order in strain give one curve: 0.01 to 0.17 % of the last force apart.
 TEST_P(MeasureChoice, OfFirstOrderDoesNotMatter) { EXPECT_LT(difference_from_intensity(GetParam()), 4e-3); }
 
-INSTANTIATE_TEST_SUITE_P(Figure2, MeasureChoice,
+INSTANTIATE_TEST_SUITE_P(Figure2, MeasureChoice,  // long
                          testing::Values(Choice{DeformationMeasure::radius_ratio, BoxSplit::kuhn},
                                          Choice{DeformationMeasure::solid_angle, BoxSplit::kuhn},
                                          Choice{DeformationMeasure::radius_ratio, BoxSplit::alternating},
@@ -138,7 +138,7 @@ TEST_P(MeasureOrder, Matters) {
   EXPECT_LT(difference, 0.12);
 }
 
-INSTANTIATE_TEST_SUITE_P(Figure2, MeasureOrder,
+INSTANTIATE_TEST_SUITE_P(Figure2, MeasureOrder,  // long
                          testing::Values(Choice{DeformationMeasure::one_minus_q, BoxSplit::kuhn},
                                          Choice{DeformationMeasure::one_minus_q, BoxSplit::alternating}));
 

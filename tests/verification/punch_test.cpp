@@ -65,7 +65,7 @@ double measured_kappa(const test::LayerOptions& options, const Tissue& t, bool w
 class FlatPunch : public testing::TestWithParam<Punch> {};
 
 // Three meshes come closer from above, and the finest is within 3 %: 0.9 to 2.3 % was measured.
-TEST_P(FlatPunch, ConvergesToTheExactForce) {
+TEST_P(FlatPunch, ConvergesToTheExactForce) {  // long
   const auto [nu, a_over_h, kappa] = GetParam();
   double before = 1.0;
   for (const int mesh : {1, 2, 3}) {
@@ -88,8 +88,8 @@ INSTANTIATE_TEST_SUITE_P(Kappa, FlatPunch,
                          });
 
 // Without sharing its volume change a tetrahedron is too stiff: from above, and further off than with it.
-TEST(FlatPunchLayer, OwnVolumeIsStiffer) {
-  const double kappa = 3.4840;  // ν = 0.49, a/h = 1
+TEST(FlatPunchLayer, OwnVolumeIsStiffer) {  // long
+  const double kappa = 3.4840;              // ν = 0.49, a/h = 1
   for (const int mesh : {1, 2}) {
     const double own = measured_kappa(layer(1.0, mesh), tissue(0.49, VolumeChange::element)) / kappa - 1.0,
                  nodal = measured_kappa(layer(1.0, mesh), tissue(0.49, VolumeChange::average_nodal)) / kappa - 1.0;
@@ -99,7 +99,7 @@ TEST(FlatPunchLayer, OwnVolumeIsStiffer) {
 }
 
 // The wall of the layer is out of reach: held or free, the force is the same to 0.2 %; at a + 2 h it is not.
-TEST(FlatPunchLayer, TheLayerIsWideEnough) {
+TEST(FlatPunchLayer, TheLayerIsWideEnough) {  // long
   const Tissue t = tissue(0.49, VolumeChange::average_nodal);
   test::LayerOptions o = layer(1.0, 2);
   const double free = measured_kappa(o, t), held = measured_kappa(o, t, true);

@@ -98,7 +98,7 @@ TEST(RegionMeshMechanics, ThickShellComesToLame) {
 }
 
 // −1.9 % inside, −1.5 % outside were measured with 50 400 tets.
-TEST(RegionMeshMechanicsLong, ThickShellIsWithinTwoPercent) {
+TEST(RegionMeshMechanicsLong, ThickShellIsWithinTwoPercent) {  // long
   const ShellErrors s = shell({.edge = 0.0045}, kLevel);
   record("inside", s.inside), record("outside", s.outside);
   EXPECT_LT(s.tets, 52000u);
@@ -121,7 +121,7 @@ TEST(RegionMeshMechanics, StiffCoreTakesItsShare) {
 }
 
 // 1.4 % was measured with 20 300 tets.
-TEST(RegionMeshMechanicsLong, StiffCoreIsWithinTwoPercent) {
+TEST(RegionMeshMechanicsLong, StiffCoreIsWithinTwoPercent) {  // long
   const CoreErrors c = core(0.0065, kTurned);
   record("core", c.core);
   EXPECT_LT(c.tets, 22000u);
@@ -141,7 +141,7 @@ TEST(RegionMeshMechanics, SqueezedBallDoesTheWorkOfTheSeries) {
 }
 
 // −1.6 and −1.9 % were measured with 19 700 tets.
-TEST(RegionMeshMechanicsLong, SqueezedBallIsWithinTwoPercentHoweverTheLatticeLies) {
+TEST(RegionMeshMechanicsLong, SqueezedBallIsWithinTwoPercentHoweverTheLatticeLies) {  // long
   const SqueezeError level = squeeze({.edge = 0.0065}, kLevel), turned = squeeze({.edge = 0.0065}, kTurned);
   record("level", level.error), record("turned", turned.error);
   EXPECT_LT(level.tets, 21000u);

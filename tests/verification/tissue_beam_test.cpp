@@ -92,7 +92,7 @@ double bend(const Tissue& t, int n, BoxSplit split = BoxSplit::alternating) {
 }
 
 // Pure bending, ν = 0.3: 16.6, 4.2 and 1.0 % too stiff with 4, 8 and 16 cells across.
-TEST(Bending, PureBendingConverges) {
+TEST(Bending, PureBendingConverges) {  // long
   const Tissue t = tissue(0.3);
   const double error[] = {bend(t, 4) - 1.0, bend(t, 8) - 1.0, bend(t, 16) - 1.0};
   for (int k = 0; k < 3; ++k) RecordProperty("percent_" + std::to_string(4 << k), std::to_string(100.0 * error[k]));
@@ -103,7 +103,7 @@ TEST(Bending, PureBendingConverges) {
 
 // Nearly incompressible: on the Kuhn split tetrahedra lock, 49 % too stiff at ν = 0.49 with 8 cells across and 132 % at
 // 0.499, and finer ones hardly less. With shared volume they are as near as at ν = 0.3: 5 %.
-TEST(Bending, SharedVolumeDoesNotLock) {
+TEST(Bending, SharedVolumeDoesNotLock) {  // long
   const auto error = [](double nu, VolumeChange volume_change, BoxSplit split) {
     const double e = bend(tissue(nu, volume_change), 8, split) - 1.0;
     testing::Test::RecordProperty((split == BoxSplit::kuhn ? "kuhn " : "alternating ") + std::to_string(nu) +
@@ -176,7 +176,7 @@ class LargeDeflection : public testing::TestWithParam<Kinematics> {};
 
 // Bent by up to 60°, the bar follows the elastica of the bending stiffness that its mesh has at small load: what is
 // tested is rotation. Shear adds 0.15 % of deflection at this slenderness. Measured: 0.2 % across, 0.4 % along.
-TEST_P(LargeDeflection, FollowsTheElastica) {
+TEST_P(LargeDeflection, FollowsTheElastica) {  // long
   const Tissue t = tissue(0.0, VolumeChange::element, GetParam());
   const std::vector<double> alphas{1e-3, 0.5, 1.0, 2.0, 3.0, 4.0};
   const std::vector<Vec3d> tips = deflect(t, alphas);
@@ -194,7 +194,7 @@ INSTANTIATE_TEST_SUITE_P(Kinematics, LargeDeflection, testing::Values(Kinematics
                          [](const auto& p) { return p.param == Kinematics::green ? "green" : "corotational"; });
 
 // Small strain does not turn with the bar: it deflects in proportion and its end never comes nearer.
-TEST(LargeDeflectionOfSmallStrain, KnowsNoRotation) {
+TEST(LargeDeflectionOfSmallStrain, KnowsNoRotation) {  // long
   const std::vector<Vec3d> tips = deflect(tissue(0.0), {1e-3, 2.0});
   EXPECT_NEAR(tips[1].z, 2000.0 * tips[0].z, 1e-6 * std::abs(tips[1].z));
   EXPECT_LT(std::abs(tips[1].x), 1e-3);

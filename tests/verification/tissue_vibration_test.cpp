@@ -61,7 +61,7 @@ class FreeVibration : public testing::TestWithParam<Tissue> {};
 
 // Means over the first and the last tenth of 60,000 steps, some 480 periods of the shortest waves, differ by less than
 // 1e-4. 6e-5 was measured at most, and some ten times as much at four times the step: it is the scheme's, not the law's.
-TEST_P(FreeVibration, KeepsItsEnergy) {
+TEST_P(FreeVibration, KeepsItsEnergy) {  // long
   const Drift d = drift_of(GetParam(), 60000);
   RecordProperty("drift", std::to_string(1e6 * d.drift) + "e-6, swing " + std::to_string(1e6 * d.swing) + "e-6");
   EXPECT_LT(std::abs(d.drift), 1e-4);
@@ -75,7 +75,7 @@ INSTANTIATE_TEST_SUITE_P(Conservative, FreeVibration, testing::ValuesIn(conserva
 });
 
 // A secant law is not conservative, and the same test sees it.
-TEST(FreeVibrationOfASecantLaw, Drifts) {
+TEST(FreeVibrationOfASecantLaw, Drifts) {  // long
   Tissue t;
   t.youngs_modulus = 3000.0, t.law = LinearLaw{4000.0};
   const Drift d = drift_of(t, 60000);

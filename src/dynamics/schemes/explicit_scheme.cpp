@@ -6,7 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "dynamics/make_body.h"
+#include "dynamics/state/make_body.h"
 #include "dynamics/step/step_rules.h"
 #include "element/tet_fields.h"
 

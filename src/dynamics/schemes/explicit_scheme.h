@@ -17,10 +17,10 @@
 #include <string>
 #include <vector>
 
-#include "dynamics/interactions.h"
 #include "dynamics/schemes/active_kick.h"
 #include "dynamics/schemes/scheme.h"
 #include "dynamics/schemes/stiff_masses.h"
+#include "dynamics/state/interactions.h"
 #include "dynamics/step/step_control.h"
 #include "engine/moving_body.h"
 #include "engine/stage_holds.h"

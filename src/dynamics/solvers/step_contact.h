@@ -19,10 +19,10 @@
 #include <utility>
 #include <vector>
 
-#include "dynamics/interactions.h"
 #include "dynamics/solvers/step_factor.h"
 #include "dynamics/solvers/step_interrupt.h"
 #include "dynamics/state/body_state.h"
+#include "dynamics/state/interactions.h"
 
 namespace glisson {
 

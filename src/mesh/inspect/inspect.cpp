@@ -5,10 +5,10 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "mesh/inspect/require_valid.h"
 #include "mesh/inspect/warnings.h"
 #include "mesh/topology/faces.h"
 #include "mesh/topology/repeated_tets.h"
+#include "mesh/topology/require_valid.h"
 
 namespace glisson {
 namespace {

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "glisson/mesh_refinement.h"
-#include "mesh/inspect/require_valid.h"
 #include "mesh/topology/faces.h"
+#include "mesh/topology/require_valid.h"
 
 namespace glisson {
 namespace {

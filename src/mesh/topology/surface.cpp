@@ -1,6 +1,6 @@
 // surface.cpp — the boundary of a mesh: the faces that belong to one tetrahedron only.
-#include "mesh/inspect/require_valid.h"
 #include "mesh/topology/faces.h"
+#include "mesh/topology/require_valid.h"
 
 namespace glisson {
 

@@ -12,7 +12,7 @@
 #include "mesh/inspect/nearest_point.h"
 #include "scene/build/build_instruments.h"
 #include "scene/build/palpation.h"
-#include "scene/parse/select.h"
+#include "scene/build/select.h"
 
 namespace glisson::scene {
 namespace {

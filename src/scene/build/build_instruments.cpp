@@ -11,7 +11,7 @@
 #include "glisson/mesh.h"
 #include "scene/build/body_places.h"
 #include "scene/build/palpation.h"
-#include "scene/parse/select.h"
+#include "scene/build/select.h"
 
 namespace glisson {
 namespace {

@@ -7,11 +7,11 @@
 
 #include "base/nearest.h"
 #include "glisson/scene/scene.h"
-#include "mesh/inspect/require_valid.h"
 #include "mesh/inspect/vertex_set.h"
+#include "mesh/topology/require_valid.h"
 #include "scene/build/build_instruments.h"
+#include "scene/build/select.h"
 #include "scene/build/supports.h"
-#include "scene/parse/select.h"
 
 namespace glisson {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/nearest.h"
-#include "scene/build/presets.h"
+#include "scene/parse/presets.h"
 #include "scene/parse/sections.h"
 #include "scene/parse/tissue_file.h"
 

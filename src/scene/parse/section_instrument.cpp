@@ -3,9 +3,9 @@
 #include <variant>
 
 #include "glisson/scene/scene.h"
+#include "scene/parse/result_names.h"
 #include "scene/parse/section.h"
 #include "scene/parse/sections.h"
-#include "scene/run/result_names.h"
 
 namespace glisson::scene {
 namespace {

@@ -1,8 +1,8 @@
 // section_motion.cpp — [motion]: time, damping, gravity; what holds, loads and presses the body; [output].
 #include "glisson/scene/scene.h"
+#include "scene/parse/result_names.h"
 #include "scene/parse/section.h"
 #include "scene/parse/sections.h"
-#include "scene/run/result_names.h"
 
 namespace glisson::scene {
 namespace {

@@ -1,7 +1,7 @@
 // section_probe.cpp — [[probe]]: what is read at some place of the body with every sample.
+#include "scene/parse/result_names.h"
 #include "scene/parse/section.h"
 #include "scene/parse/sections.h"
-#include "scene/run/result_names.h"
 
 namespace glisson::scene {
 namespace {

@@ -1,8 +1,8 @@
 // section_scene.cpp — the top level: what a scene says once, and what each of its variants consists of.
 #include "glisson/scene/scene.h"
+#include "scene/parse/result_names.h"
 #include "scene/parse/section.h"
 #include "scene/parse/sections.h"
-#include "scene/run/result_names.h"
 
 namespace glisson::scene {
 const SectionSpec& measured_section() {

@@ -3,7 +3,7 @@
 #include <type_traits>
 
 #include "glisson/scene/scene.h"
-#include "scene/build/presets.h"
+#include "scene/parse/presets.h"
 #include "scene/parse/section.h"
 #include "scene/parse/sections.h"
 

@@ -5,7 +5,7 @@
 
 #include "base/input_file.h"
 #include "glisson/scene/scene.h"
-#include "scene/build/presets.h"
+#include "scene/parse/presets.h"
 #include "scene/parse/sections.h"
 
 namespace glisson::scene {
