@@ -134,9 +134,13 @@ Simulation::Impl& Simulation::inside() const {
   throw std::logic_error("simulation: it was moved from; it can be assigned to or destroyed, and no more");
 }
 
+void Simulation::Impl::refuse_half_a_step(const std::string& name) const {
+  if (busy != Busy::no) refuse_while_busy(name);
+}
+
 void Simulation::Impl::refuse_while_busy(const std::string& name, Busy most) const {
-  if (busy <= most) return;
-  if (busy == Busy::between_steps) {
+  if (busy <= most && asking == 0) return;
+  if (busy == Busy::between_steps && asking == 0) {
     throw std::logic_error(name + ": it was called from Interaction::between_steps, which may change the body, but " +
                            "neither step nor go to another state; call it after the step");
   }
@@ -318,11 +322,11 @@ StepResult Simulation::advance_to(double time) {
 
 double Simulation::time() const { return inside().scheme->state().time; }
 double Simulation::step_size() const {
-  const Impl::Guard guard(inside(), "step_size", Impl::Busy::yes);  // for what interactions call when they are asked
+  const Impl::Asking asking(inside());  // for what interactions call
   return inside().scheme->step_size();
 }
 double Simulation::next_corner(double after) const {
-  const Impl::Guard guard(inside(), "next_corner", Impl::Busy::yes);
+  const Impl::Asking asking(inside());
   return inside().scheme->next_corner(after);
 }
 void Simulation::set_step_end(double time) {
@@ -371,7 +375,7 @@ double Simulation::linear_share() const { return inside().scheme->linear_share()
 const EngineInfo& Simulation::engine_info() const { return inside().scheme->info(); }
 
 Energies Simulation::energies() const {
-  const Impl::Guard guard(inside(), "energies", Impl::Busy::yes);
+  const Impl::Asking asking(inside());
   Energies energies = inside().scheme->energies();
   if (!inside().scheme->state().options.track_energies) return energies;
   for (const auto& x : inside().scheme->interactions()) {
@@ -382,7 +386,7 @@ Energies Simulation::energies() const {
 }
 
 std::optional<double> Simulation::stored_energy() const {
-  const Impl::Guard guard(inside(), "stored_energy", Impl::Busy::yes);
+  const Impl::Asking asking(inside());
   const Scheme& scheme = *inside().scheme;
   const double ahead = time() - force_time();
   std::vector<Vec3d> u(displacement().begin(), displacement().end());
@@ -412,7 +416,7 @@ TetFields Simulation::tet_fields() const {
 }
 
 ContactFields Simulation::contact_fields() const {
-  const Impl::Guard guard(inside(), "contact_fields", Impl::Busy::yes);
+  const Impl::Asking asking(inside());
   const auto interactions = inside().scheme->interactions();
   if (interactions.empty()) return {};
   return glisson::contact_fields(present_mesh(), positions(), interactions);

@@ -1,6 +1,7 @@
 // simulation_impl.h — what a Simulation holds: the mesh that it shows, the scheme that moves its body, and what guards both.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <string>
 #include <vector>
@@ -45,9 +46,13 @@ struct Simulation::Impl {
   /// What calls out to functions of a program's own at present.
   enum class Busy { no, between_steps, yes };
   Busy busy = Busy::no;
+  /// Const members, on any thread, that call out to such functions at present.
+  std::atomic<int> asking{0};
   /// @param name  of the member that would change something @param most  the busiest in which it may
-  /// @throws std::logic_error where the simulation is busier
+  /// @throws std::logic_error where the simulation is busier, or a const member asks
   void refuse_while_busy(const std::string& name, Busy most = Busy::no) const;
+  /// What does not change anything: only where the simulation is busy. @throws std::logic_error
+  void refuse_half_a_step(const std::string& name) const;
   /// While it lives, what a program's own functions call is refused where it would change something.
   class Guard {
    public:
@@ -60,6 +65,17 @@ struct Simulation::Impl {
    private:
     Impl& inside_;
     Busy before_;
+  };
+  /// The same around what a const member asks of such functions; several threads may.
+  class Asking {
+   public:
+    explicit Asking(Impl& inside) : inside_(inside) { ++inside_.asking; }
+    ~Asking() { --inside_.asking; }
+    Asking(const Asking&) = delete;
+    Asking& operator=(const Asking&) = delete;
+
+   private:
+    Impl& inside_;
   };
 
   /// Block of a region. @throws std::invalid_argument where it has none

@@ -133,7 +133,8 @@ void Simulation::Impl::load(const State::Contents& saved) {
 }
 
 State Simulation::save_state() const {
-  const Impl::Guard guard(inside(), "save_state");
+  inside().refuse_half_a_step("save_state");
+  const Impl::Asking asking(inside());
   return inside().save();
 }
 
@@ -150,7 +151,8 @@ void Simulation::reset() {
 }
 
 void Simulation::save(std::ostream& out) const {
-  const Impl::Guard guard(inside(), "save");
+  inside().refuse_half_a_step("save");
+  const Impl::Asking asking(inside());
   Archive contents;
   inside().archive(contents);
   write_checkpoint(contents, out);

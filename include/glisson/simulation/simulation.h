@@ -10,7 +10,8 @@
 // change the body may be called from Interaction::between_steps(). A simulation that was moved from can only be assigned to
 // or destroyed: its members throw std::logic_error.
 //
-// One thread at a time uses a simulation, for reading too: some const members fill what they return when they are first asked.
+// Several threads may read a simulation at once, by its const members; while one changes it, no other may use it. What an interaction of
+// a program's own answers to them (released_energy(), save_state()) is then asked from several threads.
 #pragma once
 
 #include <cstdint>

@@ -36,11 +36,13 @@ ExplicitScheme::ExplicitScheme(Body body, const SimulationOptions& options, Drag
 }
 
 const ExplicitScheme::StateCopy& ExplicitScheme::read_state() const {
-  if (!copy_.current) {
+  if (!copy_is_current_.load(std::memory_order_acquire)) {
+    const std::lock_guard lock(filling_);
+    if (copy_is_current_.load(std::memory_order_relaxed)) return copy_;
     copy_.displacement.resize(state_.body.vertex_count);
     copy_.velocity.resize(state_.body.vertex_count);
     moving_->read_state(copy_.displacement, copy_.velocity);
-    copy_.current = true;
+    copy_is_current_.store(true, std::memory_order_release);
   }
   return copy_;
 }
@@ -124,7 +126,7 @@ void ExplicitScheme::take_state(std::span<const Vec3d> displacement, std::span<c
   take_stiff_masses();
   moving_->list_above(control_->list_above(), control_->single_limits());
   take_stiffness(moving_->advance(0.0, {}, false));
-  copy_.current = false;
+  copy_is_current_ = false;
   if (!state_.options.track_energies) return;
   double kinetic = 0.0;
   for (std::size_t i = 0; i < velocity.size(); ++i)
@@ -267,7 +269,7 @@ StepResult ExplicitScheme::step() {
   hold_rows_in_stages();
   const Advance& seen = moving_->advance(h, state_.gravity_at(state_.time), state_.options.track_energies);
   take_stiffness(seen);
-  copy_.current = false;
+  copy_is_current_ = false;
   if (!seen.finite) {
     message_ = not_finite_at(state_.time);
     return {StepStatus::not_finite, seen.inverted, message_};
@@ -289,7 +291,7 @@ StepResult ExplicitScheme::step() {
   if (state_.options.track_energies && seen.brought_in != 0.0) ledger_.bring_in(0.0, seen.brought_in);
   for (ActiveVertex& w : moving_->active()) w.displacement += w.velocity * h;
   moving_->place_active();
-  copy_.current = false;  // of what a callback asked for within the step
+  copy_is_current_ = false;  // of what a callback asked for within the step
   state_.time += h;
   ++state_.steps;
   masses_.step_made(h);
@@ -321,7 +323,7 @@ void ExplicitScheme::take_body(Archive& ar) {
   }
   if (!ar.reads()) return;
   info_ = info_of(*moving_, state_.body);
-  copy_.current = false;
+  copy_is_current_ = false;
   control_->body_read(bounded ? &state_.changer().stars() : nullptr);
 }
 
@@ -365,7 +367,7 @@ void ExplicitScheme::archive_motion(Archive& ar) {
   if (ar.reads()) act_on_only(active);
   ar.check(moving_->active().size() == active.size());
   moving_->archive_state(ar, state_.body.vertex_count);
-  copy_.current = false;
+  copy_is_current_ = false;
   for (ActiveVertex& w : moving_->active()) ar(w.elastic, w.viscous);
   masses_.archive(ar, *moving_);
   ar.same_size(stiffening_);
@@ -386,7 +388,7 @@ void ExplicitScheme::take_over(const BodyChange& change) {
   told_.reset();
   moving_->apply(change, state_.changer().stars(), state_.gamma);
   control_->mesh_changed(change, state_.changer().stars());
-  copy_.current = false;
+  copy_is_current_ = false;
 }
 
 /// The same state in a body of another kind, for tissues that the present kind does not have.
@@ -425,7 +427,7 @@ void ExplicitScheme::follow_tissues(const TissueChange& change) {
   moving_->list_above(control_->list_above(), control_->single_limits());
   take_stiffness(moving_->advance(0.0, {}, false));
   std::copy(told.begin(), told.end(), moving_->active().begin());
-  copy_.current = false;
+  copy_is_current_ = false;
 }
 
 std::string ExplicitScheme::past() {

@@ -11,7 +11,9 @@
 //   add forces ─▶ kick v₋ → v₊ ─▶ impose motions ─▶ interactions constrain v₊ ─▶ book work ─▶ drift u
 #pragma once
 
+#include <atomic>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -112,7 +114,6 @@ class ExplicitScheme : public Scheme {
   /// The state in the mesh's order, copied from the body when someone asks.
   struct StateCopy {
     std::vector<Vec3d> displacement, velocity;
-    bool current = false;
   };
 
   const StateCopy& read_state() const;
@@ -138,7 +139,10 @@ class ExplicitScheme : public Scheme {
   std::vector<Vec3d> inverse_mass_;    ///< of the active vertices, for them [1/kg]
   engine::StageHolds stage_holds_;
   std::unique_ptr<StepControl> control_;
+  // Filled when it is asked for first, by whichever thread does.
   mutable StateCopy copy_;
+  mutable std::atomic<bool> copy_is_current_{false};
+  mutable std::mutex filling_;
   std::string message_;  ///< why the last step was not made
 };
 
