@@ -9,9 +9,9 @@
 #include "fit/data/load_curves.h"
 #include "fit/data/test_columns.h"
 #include "fit/data/units.h"
-#include "fit/forward/indenter.h"
 #include "fit/uncertainty/further_batch.h"
 #include "fit/uncertainty/validation.h"
+#include "lab/indenter.h"
 
 namespace glisson::fit {
 namespace {
@@ -139,7 +139,7 @@ double modulus_of(const Curve& c, double area, double height) {
     const std::vector<double>&depths = m.loaded() ? c.force : c.displacement,
           &forces = m.loaded() ? c.displacement : c.force;
     const auto far = static_cast<std::size_t>(std::max_element(depths.begin(), depths.end()) - depths.begin());
-    return std::max(0.0, thick_layer_modulus(*m.indenter, depths[far], forces[far]));
+    return std::max(0.0, lab::thick_layer_modulus(*m.indenter, depths[far], forces[far]));
   }
   const double stiffness = m.loaded() ? dd / fd : fd / dd;
   switch (m.deforming) {

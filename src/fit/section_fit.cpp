@@ -59,7 +59,7 @@ void check_parameters(const std::vector<ParameterSpec>& list, const Node& table,
 /// Friction is a number of [specimen] and of a parameter, and asks for a forward model of its own.
 void check_faces(const FitSpec& fit, const Place& place) {
   const bool rubs =
-      fit.specimen && fit.specimen->shape == SpecimenShape::cylinder && fit.specimen->faces == Faces::friction;
+      fit.specimen && fit.specimen->shape == SpecimenShape::cylinder && fit.specimen->faces == lab::Faces::friction;
   const auto frees = [](const ParameterSpec& p) { return is_plate_key(p.key); };
   const auto any = [&](const auto& list) { return std::any_of(list.begin(), list.end(), frees); };
   const bool freed = any(fit.parameters) ||
@@ -90,12 +90,12 @@ void check_layer(const FitSpec& fit, const DataSpec& data, const Node& own, cons
 }
 
 /// What plates that the faces cling to cannot do. @return what is wrong and the way out; empty: nothing
-std::string fault_of_plates(const DataSpec& data, Faces faces) {
+std::string fault_of_plates(const DataSpec& data, lab::Faces faces) {
   const auto how = data.deforming.value_or(data.test == LabTest::tension ? Deforming::tension : Deforming::compression);
   const bool two_axes = data.test == LabTest::equibiaxial || data.test == LabTest::planar ||
                         how == Deforming::equibiaxial || how == Deforming::planar;
   if (two_axes) return "is not made between plates; set faces = \"smooth\" in [specimen]";
-  if (faces != Faces::friction) return {};
+  if (faces != lab::Faces::friction) return {};
   if (how == Deforming::tension)
     return "pulls, and plates pull only what is glued to them; set faces = \"bonded\" in [specimen]";
   if (data.test == LabTest::cyclic && how == Deforming::compression)

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace glisson::fit {
+namespace glisson::lab {
 
 class BandMatrix {
  public:
@@ -32,4 +32,4 @@ class BandMatrix {
   std::vector<double> data_;
 };
 
-}  // namespace glisson::fit
+}  // namespace glisson::lab

@@ -1,4 +1,4 @@
-#include "fit/forward/barrel.h"
+#include "lab/barrel.h"
 
 #include <cmath>
 #include <limits>
@@ -6,7 +6,7 @@
 #include <numeric>
 #include <stdexcept>
 
-namespace glisson::fit {
+namespace glisson::lab {
 namespace {
 
 constexpr double kSlip = 0.02;     ///< spread at which friction is 0.7 of its most, over that on smooth plates
@@ -174,4 +174,4 @@ double Barrel::press(double displacement, double pressure) {
   return face_force() + side_force_;
 }
 
-}  // namespace glisson::fit
+}  // namespace glisson::lab

@@ -11,7 +11,7 @@
 
 #include "glisson/material/hyperelastic_law.h"
 
-namespace glisson::fit {
+namespace glisson::lab {
 
 struct MeridianElement {
   static constexpr std::size_t kVertices = 9, kPoints = 9, kUnknowns = 2 * kVertices;
@@ -58,4 +58,4 @@ struct MeridianMesh {
 /// Ends and middles of elements from 0 on. @param sizes  of the elements, in any unit @param length  of all of them [m]
 std::vector<double> ends_and_middles(const std::vector<double>& sizes, double length);
 
-}  // namespace glisson::fit
+}  // namespace glisson::lab

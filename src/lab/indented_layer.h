@@ -12,10 +12,10 @@
 #include <memory>
 #include <vector>
 
-#include "fit/forward/layer_mesh.h"
-#include "fit/forward/meridian_solid.h"
+#include "lab/layer_mesh.h"
+#include "lab/meridian_solid.h"
 
-namespace glisson::fit {
+namespace glisson::lab {
 
 class IndentedLayer {
  public:
@@ -72,4 +72,4 @@ class IndentedLayer {
   int iterations_ = 0;       ///< of Newton's method in the last step
 };
 
-}  // namespace glisson::fit
+}  // namespace glisson::lab

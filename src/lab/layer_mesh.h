@@ -8,13 +8,13 @@
 
 #include <memory>
 
-#include "fit/forward/indenter.h"
-#include "fit/forward/meridian_mesh.h"
+#include "lab/indenter.h"
+#include "lab/meridian_mesh.h"
 
-namespace glisson::fit {
+namespace glisson::lab {
 
 /// @param deepest  of all depths to come [m] @param fineness  1 or more: as many times smaller elements
 std::shared_ptr<const MeridianMesh> layer_mesh(const Layer& layer, const Indenter& indenter, double deepest,
                                                double fineness);
 
-}  // namespace glisson::fit
+}  // namespace glisson::lab

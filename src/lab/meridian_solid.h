@@ -7,10 +7,10 @@
 #include <memory>
 #include <vector>
 
-#include "fit/forward/band_matrix.h"
-#include "fit/forward/meridian_mesh.h"
+#include "lab/band_matrix.h"
+#include "lab/meridian_mesh.h"
 
-namespace glisson::fit {
+namespace glisson::lab {
 
 /// Where a body is.
 struct MeridianState {
@@ -44,4 +44,4 @@ class MeridianSolid {
   std::vector<MeridianElement::Pressure> pressures_;  ///< of the last assembly
 };
 
-}  // namespace glisson::fit
+}  // namespace glisson::lab

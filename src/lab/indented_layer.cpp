@@ -1,4 +1,4 @@
-#include "fit/forward/indented_layer.h"
+#include "lab/indented_layer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "base/text.h"
 
-namespace glisson::fit {
+namespace glisson::lab {
 namespace {
 
 constexpr double kStiff = 2000.0;  ///< of the contact, over μ and the mean pressure and the contact's radius
@@ -199,4 +199,4 @@ double IndentedLayer::press(double depth) {
   return force_;
 }
 
-}  // namespace glisson::fit
+}  // namespace glisson::lab

@@ -1,6 +1,6 @@
 // indented_layer_test.cpp — a layer under an indenter against closed forms, published factors of thin layers, its own mesh
 // and what scales.
-#include "fit/forward/indented_layer.h"
+#include "lab/indented_layer.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace glisson::fit::indented_layer_test {
+namespace glisson::lab::indented_layer_test {
 namespace {
 
 constexpr double kMu = 1000.0, kRadius = 1e-3, kDegree = std::numbers::pi / 180.0;
@@ -205,4 +205,4 @@ TEST(IndentedLayer, RefusesWhatItCannotFollow) {
 }
 
 }  // namespace
-}  // namespace glisson::fit::indented_layer_test
+}  // namespace glisson::lab::indented_layer_test

@@ -1,6 +1,6 @@
-#include "fit/forward/meridian_solid.h"
+#include "lab/meridian_solid.h"
 
-namespace glisson::fit {
+namespace glisson::lab {
 
 void MeridianState::extrapolate(const MeridianState& last, const MeridianState& before, double ahead) {
   for (std::size_t k = 0; k < u.size(); ++k) u[k] += ahead * (last.u[k] - before.u[k]);
@@ -48,4 +48,4 @@ void MeridianSolid::take(const std::vector<double>& step, MeridianState& state) 
   }
 }
 
-}  // namespace glisson::fit
+}  // namespace glisson::lab

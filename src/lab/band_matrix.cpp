@@ -1,8 +1,8 @@
-#include "fit/forward/band_matrix.h"
+#include "lab/band_matrix.h"
 
 #include <cmath>
 
-namespace glisson::fit {
+namespace glisson::lab {
 
 void BandMatrix::fix(std::size_t row) {
   std::fill_n(data_.begin() + static_cast<std::ptrdiff_t>(row * stride_), stride_, 0.0);
@@ -48,4 +48,4 @@ void BandMatrix::solve(std::vector<double>& x) const {
   }
 }
 
-}  // namespace glisson::fit
+}  // namespace glisson::lab

@@ -1,4 +1,4 @@
-#include "fit/forward/meridian_mesh.h"
+#include "lab/meridian_mesh.h"
 
 #include <Eigen/Dense>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "material/meridian_response.h"
 
-namespace glisson::fit {
+namespace glisson::lab {
 namespace {
 
 /// The quadratic polynomials of −1, 0, 1 and their slopes.
@@ -152,4 +152,4 @@ MeridianMesh::MeridianMesh(std::vector<double> columns_at, std::vector<double> r
   }
 }
 
-}  // namespace glisson::fit
+}  // namespace glisson::lab

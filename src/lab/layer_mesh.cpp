@@ -1,9 +1,9 @@
-#include "fit/forward/layer_mesh.h"
+#include "lab/layer_mesh.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace glisson::fit {
+namespace glisson::lab {
 namespace {
 
 constexpr double kHalfSpace = 1000.0;              ///< where a half-space ends, in radii of contact: 1e-3 of the force
@@ -68,4 +68,4 @@ std::shared_ptr<const MeridianMesh> layer_mesh(const Layer& layer, const Indente
                                         ends_and_middles(down, height));
 }
 
-}  // namespace glisson::fit
+}  // namespace glisson::lab

@@ -7,9 +7,11 @@
 
 #include <string>
 
-#include "glisson/fit.h"
+#include "glisson/indentation.h"
 
-namespace glisson::fit {
+namespace glisson::lab {
+
+using fit::Indenter, fit::IndenterContact, fit::IndenterShape, fit::Layer;
 
 /// About the radius of contact with a thick layer [m]: a, √(R d), 2/π d tan θ        [Sneddon1965]
 double contact_radius(const Indenter& indenter, double depth);
@@ -35,4 +37,4 @@ Entry entry_of(const Indenter& indenter, double tip, double r, double z);
 /// "a sphere of 2 mm radius".
 std::string words_of(const Indenter& indenter);
 
-}  // namespace glisson::fit
+}  // namespace glisson::lab

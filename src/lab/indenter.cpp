@@ -1,4 +1,4 @@
-#include "fit/forward/indenter.h"
+#include "lab/indenter.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,14 +6,16 @@
 
 #include "base/text.h"
 
-namespace glisson::fit {
+namespace glisson {
 
-Fault Indenter::check() const {
+Fault fit::Indenter::check() const {
   if (shape != IndenterShape::flat || edge_radius <= radius) return {};
   return {detail::number_text(1e3 * edge_radius) + " mm is above " + detail::number_text(1e3 * radius) +
               " mm, the radius of its face; give a smaller one",
           "edge_radius"};
 }
+
+namespace lab {
 
 double contact_radius(const Indenter& indenter, double depth) {
   switch (indenter.shape) {
@@ -74,4 +76,5 @@ std::string words_of(const Indenter& indenter) {
          detail::number_text(1e3 * indenter.radius) + " mm radius";
 }
 
-}  // namespace glisson::fit
+}  // namespace lab
+}  // namespace glisson

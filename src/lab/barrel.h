@@ -19,9 +19,9 @@
 #include <memory>
 #include <vector>
 
-#include "fit/forward/meridian_solid.h"
+#include "lab/meridian_solid.h"
 
-namespace glisson::fit {
+namespace glisson::lab {
 
 /// How a cylinder's faces meet the plates.
 enum class Faces {
@@ -93,4 +93,4 @@ class Barrel {
   double side_force_ = 0.0;  ///< of the plate on the side in the last assembly [N]
 };
 
-}  // namespace glisson::fit
+}  // namespace glisson::lab
