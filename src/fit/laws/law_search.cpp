@@ -1,4 +1,4 @@
-#include "fit/search/law_search.h"
+#include "fit/laws/law_search.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +7,7 @@
 
 #include "fit/data/units.h"
 #include "fit/forward/offset_model.h"
+#include "fit/model/curve_kinds.h"
 #include "scene/parse/document.h"
 
 namespace glisson::fit {

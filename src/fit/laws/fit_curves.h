@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "fit/fit_spec.h"
+#include "fit/spec/fit_spec.h"
 #include "fit/uncertainty/validation.h"
 #include "glisson/fit.h"
 
@@ -28,16 +28,7 @@ FitCurves read_curves(const FitSpec& spec, const SpecimenSize& size, const std::
 /// less than a thousandth of its largest force, that thousandth stands for it.
 std::vector<double> spreads_of(const std::vector<Curve>& curves, Weighing how);
 
-/// Whether two curves are of the same deformation, in the same measure and unit.
-bool same_kind(const Curve& a, const Curve& b);
-/// Whether all are.
-bool of_one_kind(const std::vector<Curve>& curves);
-/// The unit of all curves' forces; empty where they differ: errors are then parts of each curve's largest number.
-std::string common_unit(const std::vector<Curve>& curves);
-/// What turns a curve's forces into that unit.
-double size_in(const std::string& unit, const Curve& curve);
-
-/// The errors of all curves in that unit.
+/// The errors of all curves in their common_unit (curve_kinds.h).
 Validation errors_in_common_unit(const std::vector<Curve>& curves, std::vector<Prediction> predictions);
 
 /// Young's modulus by the first tenth of the curves [Pa], for bounds; needs the specimen's size.

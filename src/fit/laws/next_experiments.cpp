@@ -1,4 +1,4 @@
-#include "fit/uncertainty/next_experiments.h"
+#include "fit/laws/next_experiments.h"
 
 #include <algorithm>
 #include <cmath>

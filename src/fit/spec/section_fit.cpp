@@ -1,12 +1,12 @@
-#include "fit/section_fit.h"
+#include "fit/spec/section_fit.h"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
 #include "fit/data/section_data.h"
-#include "fit/fit_spec.h"
 #include "fit/forward/section_forward.h"
+#include "fit/spec/fit_spec.h"
 #include "scene/parse/section.h"
 
 namespace glisson::fit {

@@ -2,9 +2,9 @@
 #include "scene/describe/reference_sections.h"
 
 #include "fit/data/section_data.h"
-#include "fit/fit_spec.h"
 #include "fit/forward/section_forward.h"
-#include "fit/section_fit.h"
+#include "fit/spec/fit_spec.h"
+#include "fit/spec/section_fit.h"
 
 namespace glisson::fit {
 namespace {

@@ -1,8 +1,8 @@
-#include "fit/uncertainty/forecast.h"
+#include "fit/laws/forecast.h"
 
 #include <algorithm>
 
-#include "fit/search/local_problem.h"
+#include "fit/uncertainty/local_problem.h"
 
 namespace glisson::fit {
 namespace {

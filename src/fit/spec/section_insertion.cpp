@@ -1,4 +1,4 @@
-#include "fit/insertion/insertion_spec.h"
+#include "fit/spec/insertion_spec.h"
 #include "scene/parse/section.h"
 
 namespace glisson::fit {

@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "base/input_file.h"
-#include "fit/fit_spec.h"
-#include "fit/section_fit.h"
+#include "fit/spec/fit_spec.h"
+#include "fit/spec/section_fit.h"
 
 namespace glisson::fit {
 namespace {

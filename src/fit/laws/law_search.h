@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
-#include "fit/fit_curves.h"
 #include "fit/forward/ladder.h"
-#include "fit/run_fit.h"
+#include "fit/laws/fit_curves.h"
 #include "fit/search/cached_model.h"
 #include "fit/search/derivative_check.h"
+#include "fit/spec/fit_run.h"
 
 namespace glisson::fit {
 

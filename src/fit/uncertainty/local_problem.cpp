@@ -1,4 +1,4 @@
-#include "fit/search/local_problem.h"
+#include "fit/uncertainty/local_problem.h"
 
 #include <algorithm>
 #include <cmath>

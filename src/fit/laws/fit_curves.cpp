@@ -1,4 +1,4 @@
-#include "fit/fit_curves.h"
+#include "fit/laws/fit_curves.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,18 +9,13 @@
 #include "fit/data/load_curves.h"
 #include "fit/data/test_columns.h"
 #include "fit/data/units.h"
+#include "fit/model/curve_kinds.h"
 #include "fit/uncertainty/further_batch.h"
 #include "fit/uncertainty/validation.h"
 #include "lab/indenter.h"
 
 namespace glisson::fit {
 namespace {
-
-double largest_force(const Curve& curve) {
-  double most = 0.0;
-  for (const double f : curve.force) most = std::max(most, std::abs(f));
-  return most;
-}
 
 /// `A1`; with its test where tests of one file share a name; `A1 (2)` for the second of that name.
 void make_unique(std::vector<Curve>& curves) {
@@ -264,26 +259,6 @@ std::vector<double> spreads_of(const std::vector<Curve>& curves, Weighing how) {
   if (how == Weighing::common)
     std::fill(list.begin(), list.end(), std::sqrt(squares / static_cast<double>(list.size())));
   return list;
-}
-
-bool same_kind(const Curve& a, const Curve& b) {
-  const Measurement &m = a.measurement, &n = b.measurement;
-  return m.deforming == n.deforming && m.measured == n.measured && m.unit == n.unit;
-}
-
-bool of_one_kind(const std::vector<Curve>& curves) {
-  return std::all_of(curves.begin(), curves.end(), [&](const Curve& c) { return same_kind(c, curves.front()); });
-}
-
-std::string common_unit(const std::vector<Curve>& curves) {
-  const bool one = std::all_of(curves.begin(), curves.end(),
-                               [&](const Curve& c) { return c.measurement.unit == curves.front().measurement.unit; });
-  if (!one) return {};
-  return curves.empty() ? "N" : curves.front().measurement.unit;
-}
-
-double size_in(const std::string& unit, const Curve& curve) {
-  return unit.empty() ? 1.0 / std::max(largest_force(curve), 1e-300) : 1.0;
 }
 
 Validation errors_in_common_unit(const std::vector<Curve>& curves, std::vector<Prediction> predictions) {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "fit/search/law_search.h"
+#include "fit/laws/law_search.h"
 #include "fit/uncertainty/covariance.h"
 #include "glisson/fit.h"
 

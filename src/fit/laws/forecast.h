@@ -1,7 +1,7 @@
 // forecast.h — how many forward runs a fit will take, before it makes them.
 #pragma once
 
-#include "fit/search/law_search.h"
+#include "fit/laws/law_search.h"
 
 namespace glisson::fit {
 

@@ -1,4 +1,4 @@
-#include "fit/search/law_candidates.h"
+#include "fit/laws/law_candidates.h"
 
 #include <functional>
 #include <stdexcept>
@@ -19,26 +19,26 @@ struct Stiffness {
 };
 
 /// Collects what a candidate sets and frees; moduli in units of the tissue's.
-class Candidate {
+class LawDraft {
  public:
-  Candidate(std::string name, Stiffness of) : modulus_(of.modulus), bulk_(of.bulk) { law_.name = std::move(name); }
+  LawDraft(std::string name, Stiffness of) : modulus_(of.modulus), bulk_(of.bulk) { law_.name = std::move(name); }
 
-  Candidate& set(const std::string& key, const std::string& value) {
+  LawDraft& set(const std::string& key, const std::string& value) {
     law_.set.push_back({key, value});
     return *this;
   }
   /// A hyperelastic law; κ is held where it hardly acts.
-  Candidate& hyperelastic(const std::string& keys) {
+  LawDraft& hyperelastic(const std::string& keys) {
     return set("tissue.hyperelastic", "{ " + keys + ", bulk_modulus_Pa = " + scene::show(bulk_) + " }");
   }
-  Candidate& modulus(const std::string& key, double least, double most) {
+  LawDraft& modulus(const std::string& key, double least, double most) {
     return free(key, least * modulus_, most * modulus_, Scale::logarithmic);
   }
   /// A modulus of either sign.
-  Candidate& any_modulus(const std::string& key, double most) {
+  LawDraft& any_modulus(const std::string& key, double most) {
     return free(key, -most * modulus_, most * modulus_, Scale::linear, 0.0);
   }
-  Candidate& free(const std::string& key, double low, double high, Scale scale, std::optional<double> start = {}) {
+  LawDraft& free(const std::string& key, double low, double high, Scale scale, std::optional<double> start = {}) {
     ParameterSpec p;
     p.key = p.name = key;
     p.low = low;
@@ -61,8 +61,8 @@ struct Known {
 };
 
 /// A law of stiffness on top of E.
-Candidate of_stiffness(const std::string& name, Stiffness m) {
-  return Candidate(name, m).modulus("tissue.youngs_modulus_Pa", 0.01, 30.0);
+LawDraft of_stiffness(const std::string& name, Stiffness m) {
+  return LawDraft(name, m).modulus("tissue.youngs_modulus_Pa", 0.01, 30.0);
 }
 
 /// Laws of stiffness, on top of E.
@@ -106,20 +106,20 @@ std::vector<Known> hyperelastic_laws() {
   return {
       {{"neo_hookean", "neo-Hooke, μ alone"},
        [](const auto& n, Stiffness m) -> LawSpec {
-         return Candidate(n, m)
+         return LawDraft(n, m)
              .hyperelastic("kind = \"neo_hookean\", mu_Pa = 1")
              .modulus("tissue.hyperelastic.mu_Pa", 0.003, 10.0);
        }},
       {{"mooney_rivlin", "Mooney and Rivlin, two moduli"},
        [](const auto& n, Stiffness m) -> LawSpec {
-         return Candidate(n, m)
+         return LawDraft(n, m)
              .hyperelastic("kind = \"mooney_rivlin\", c10_Pa = 1, c01_Pa = 0")
              .modulus("tissue.hyperelastic.c10_Pa", 1e-4, 10.0)
              .any_modulus("tissue.hyperelastic.c01_Pa", 3.0);
        }},
       {{"yeoh", "Yeoh, three terms of I₁"},
        [](const auto& n, Stiffness m) -> LawSpec {
-         return Candidate(n, m)
+         return LawDraft(n, m)
              .hyperelastic("kind = \"yeoh\", c1_Pa = 1, c2_Pa = 0, c3_Pa = 0")
              .modulus("tissue.hyperelastic.c1_Pa", 0.001, 10.0)
              .any_modulus("tissue.hyperelastic.c2_Pa", 3.0)
@@ -127,42 +127,42 @@ std::vector<Known> hyperelastic_laws() {
        }},
       {{"fung", "exponential of I₁"},
        [](const auto& n, Stiffness m) -> LawSpec {
-         return Candidate(n, m)
+         return LawDraft(n, m)
              .hyperelastic("kind = \"fung\", mu_Pa = 1, b = 1")
              .modulus("tissue.hyperelastic.mu_Pa", 0.003, 10.0)
              .free("tissue.hyperelastic.b", 0.01, 30.0, Scale::logarithmic);
        }},
       {{"veronda_westmann", "exponential of I₁ with a term of I₂"},
        [](const auto& n, Stiffness m) -> LawSpec {
-         return Candidate(n, m)
+         return LawDraft(n, m)
              .hyperelastic("kind = \"veronda_westmann\", c_Pa = 1, b = 1")
              .modulus("tissue.hyperelastic.c_Pa", 0.003, 30.0)
              .free("tissue.hyperelastic.b", 0.01, 30.0, Scale::logarithmic);
        }},
       {{"gent", "Gent, chains that are stretched out at a finite Ī₁"},
        [](const auto& n, Stiffness m) -> LawSpec {
-         return Candidate(n, m)
+         return LawDraft(n, m)
              .hyperelastic("kind = \"gent\", mu_Pa = 1, limit = 10")
              .modulus("tissue.hyperelastic.mu_Pa", 0.003, 10.0)
              .free("tissue.hyperelastic.limit", 0.01, 1000.0, Scale::logarithmic);
        }},
       {{"fung_i2", "exponential of I₂"},
        [](const auto& n, Stiffness m) -> LawSpec {
-         return Candidate(n, m)
+         return LawDraft(n, m)
              .hyperelastic("kind = \"invariants\", a2_Pa = 1, b2 = 1")
              .modulus("tissue.hyperelastic.a2_Pa", 0.003, 10.0)
              .free("tissue.hyperelastic.b2", 0.01, 30.0, Scale::logarithmic);
        }},
       {{"square_i2", "I₂ and its square"},
        [](const auto& n, Stiffness m) -> LawSpec {
-         return Candidate(n, m)
+         return LawDraft(n, m)
              .hyperelastic("kind = \"invariants\", c01_Pa = 1")
              .modulus("tissue.hyperelastic.c01_Pa", 0.001, 10.0)
              .any_modulus("tissue.hyperelastic.c02_Pa", 3.0);
        }},
       {{"rivlin", "Rivlin's polynomial of second order, five moduli"},
        [](const auto& n, Stiffness m) -> LawSpec {
-         return Candidate(n, m)
+         return LawDraft(n, m)
              .hyperelastic("kind = \"invariants\", c10_Pa = 1")
              .modulus("tissue.hyperelastic.c10_Pa", 1e-4, 10.0)
              .any_modulus("tissue.hyperelastic.c01_Pa", 3.0)
@@ -177,14 +177,14 @@ std::vector<Known> ogden_laws() {
   return {
       {{"ogden", "Ogden, one term"},
        [](const auto& n, Stiffness m) -> LawSpec {
-         return Candidate(n, m)
+         return LawDraft(n, m)
              .hyperelastic("kind = \"ogden\", mu_Pa = [1], alpha = [1]")
              .modulus("tissue.hyperelastic.mu_Pa[0]", 0.003, 10.0)
              .free("tissue.hyperelastic.alpha[0]", -25.0, 25.0, Scale::linear, 2.0);
        }},
       {{"ogden2", "Ogden, two terms, one that stiffens in compression and one in tension"},
        [](const auto& n, Stiffness m) -> LawSpec {
-         return Candidate(n, m)
+         return LawDraft(n, m)
              .hyperelastic("kind = \"ogden\", mu_Pa = [1, 1], alpha = [-2, 2]")
              .modulus("tissue.hyperelastic.mu_Pa[0]", 1e-5, 10.0)
              .free("tissue.hyperelastic.alpha[0]", -60.0, -0.1, Scale::linear)

@@ -1,4 +1,4 @@
-#include "fit/law_stability.h"
+#include "fit/laws/law_stability.h"
 
 #include <algorithm>
 #include <cmath>

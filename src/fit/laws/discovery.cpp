@@ -1,4 +1,4 @@
-#include "fit/search/discovery.h"
+#include "fit/laws/discovery.h"
 
 #include <array>
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "fit/fit_spec.h"
+#include "fit/spec/fit_spec.h"
 
 namespace glisson::fit {
 

@@ -9,9 +9,8 @@
 
 #include "fit/data/data_spec.h"
 #include "fit/forward/section_forward.h"
-#include "fit/insertion/insertion_spec.h"
-#include "fit/model.h"
-#include "fit/search/problem.h"
+#include "fit/search/loss.h"
+#include "fit/spec/insertion_spec.h"
 #include "glisson/scene/scene.h"
 
 namespace glisson::fit {
