@@ -8,7 +8,7 @@
 #include "cli/exit_code.h"
 #include "cli/option_check.h"
 #include "cli/standard_streams.h"
-#include "fit/fit_spec.h"
+#include "fit/spec/fit_spec.h"
 #include "glisson/scene/scene.h"
 
 namespace glisson::app {

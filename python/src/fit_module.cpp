@@ -5,8 +5,8 @@
 #include "bind.h"
 #include "fit/files/fit_json.h"
 #include "fit/files/fit_state.h"
+#include "fit/laws/law_candidates.h"
 #include "fit/run_fit.h"
-#include "fit/search/law_candidates.h"
 #include "live_simulation.h"
 #include "report/json_text.h"
 

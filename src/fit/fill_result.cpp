@@ -7,12 +7,13 @@
 #include <set>
 
 #include "fit/data/units.h"
-#include "fit/search/local_problem.h"
+#include "fit/laws/next_experiments.h"
+#include "fit/model/curve_kinds.h"
 #include "fit/uncertainty/bootstrap.h"
 #include "fit/uncertainty/covariance.h"
 #include "fit/uncertainty/further_batch.h"
 #include "fit/uncertainty/further_specimen.h"
-#include "fit/uncertainty/next_experiments.h"
+#include "fit/uncertainty/local_problem.h"
 #include "fit/uncertainty/profile.h"
 #include "fit/uncertainty/test_table.h"
 #include "fit/uncertainty/validation.h"

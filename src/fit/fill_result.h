@@ -1,7 +1,7 @@
 // fill_result.h — what a law's optimum means: curves, intervals, profiles, verdicts, next experiments, in one result.
 #pragma once
 
-#include "fit/search/law_search.h"
+#include "fit/laws/law_search.h"
 #include "glisson/fit.h"
 
 namespace glisson::fit {

@@ -1,31 +1,10 @@
-// run_fit.h — a fit from its description to its result, with what an interrupted one remembers.
+// run_fit.h — a fit from its description to its result.
 #pragma once
 
-#include <functional>
-#include <map>
-#include <string>
-#include <vector>
-
-#include "fit/fit_spec.h"
-#include "fit/search/multi_start.h"
-#include "glisson/fit.h"
+#include "fit/spec/fit_run.h"
+#include "fit/spec/fit_spec.h"
 
 namespace glisson::fit {
-
-/// What is known of one law when a fit is interrupted.
-struct LawMemory {
-  std::vector<StartRecord> starts;
-  std::string forward;   ///< name of the forward model that was chosen; empty: not yet
-  double speedup = 0.0;  ///< how many times as fast as the scene it was then
-};
-/// Everything that need not be done again, by law.
-using FitMemory = std::map<std::string, LawMemory>;
-
-/// Options of a fit that can be resumed.
-struct FitRun : FitOptions {
-  FitMemory memory;  ///< of an interrupted run of the same fit
-  std::function<void(const FitMemory&)> remember;
-};
 
 /// Runs a fit, as run_fit of glisson/fit.h does.
 FitResult run_fit(const FitSpec& spec, const FitRun& run);

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "fit/search/law_search.h"
+#include "fit/laws/law_search.h"
 #include "glisson/fit.h"
 
 namespace glisson::fit {

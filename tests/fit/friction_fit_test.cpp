@@ -47,7 +47,7 @@ scale = "linear"
 std::string data(const std::string& file) { return "[[data]]\nfiles = [\"" + file + "\"]\n"; }
 
 /// μ and the grip that a fit of made.csv finds.
-FitResult fit_of(const std::string& key, double high, Grip grip) {
+FitResult fit_of(const std::string& key, double high, lab::Grip grip) {
   Curve curve;
   curve.name = "made";
   for (int i = 0; i < 60; ++i) {
@@ -57,7 +57,7 @@ FitResult fit_of(const std::string& key, double high, Grip grip) {
   curve.force.assign(curve.size(), 0.0);
   Tissue tissue;
   tissue.hyperelastic = NeoHookean{2000, 1e6};
-  const BarrelModel model({curve}, {0.025, 0.03, Faces::friction, grip},
+  const BarrelModel model({curve}, {0.025, 0.03, lab::Faces::friction, grip},
                           [&](std::span<const double>) { return tissue; });
   const Prediction made = model.predict(0, {});
   EXPECT_EQ(made.failure, "");
@@ -147,10 +147,10 @@ HeldOut held_out(const FitResult& result) {
 }
 
 /// The shipped fit with friction, or with smooth faces in its place, of a mix and with two of its five curves held out.
-HeldOut fit_phantoms(Faces faces, const std::string& mix, int first, int second) {
+HeldOut fit_phantoms(lab::Faces faces, const std::string& mix, int first, int second) {
   FitSpec spec = load_fit(test::shipped("scenes/fit/phantom_friction.toml"));
   spec.specimen->faces = faces;
-  if (faces == Faces::smooth) spec.parameters.pop_back();
+  if (faces == lab::Faces::smooth) spec.parameters.pop_back();
   for (DataSpec& d : spec.data) d.files.clear();
   for (int i = 1; i <= 5; ++i)
     spec.data[i == first || i == second ? 1 : 0].files.push_back("EF10_" + mix + "_A" + std::to_string(i) + ".csv");
@@ -165,7 +165,7 @@ HeldOut fit_phantoms(Faces faces, const std::string& mix, int first, int second)
 TEST(FrictionFit, MeetsHeldOutPhantomsTo65Percent) {  // long
   if (!phantom::have_phantoms()) GTEST_SKIP() << phantom::kPhantoms << " is not there";
   for (const char* mix : {"100T", "75T"}) {
-    const HeldOut h = fit_phantoms(Faces::friction, mix, 4, 5);
+    const HeldOut h = fit_phantoms(lab::Faces::friction, mix, 4, 5);
     EXPECT_LT(h.error, 1.3 * h.best) << mix;
   }
 }
@@ -179,7 +179,8 @@ TEST(FrictionFitLong, MeetsEveryHeldOutPairOfPhantomsTo65Percent) {  // verify
     double errors = 0.0, bests = 0.0, smooth_errors = 0.0;
     for (int a = 1; a <= 5; ++a) {
       for (int b = a + 1; b <= 5; ++b) {
-        const HeldOut h = fit_phantoms(Faces::friction, mix, a, b), smooth = fit_phantoms(Faces::smooth, mix, a, b);
+        const HeldOut h = fit_phantoms(lab::Faces::friction, mix, a, b),
+                      smooth = fit_phantoms(lab::Faces::smooth, mix, a, b);
         std::printf("%s, A%d and A%d held out: best %.3f kPa, times it: smooth %.2f, clinging %.2f\n", mix, a, b,
                     h.best / kPa, smooth.error / smooth.best, h.error / h.best);
         errors += h.error * h.error, bests += h.best * h.best, smooth_errors += smooth.error * smooth.error;

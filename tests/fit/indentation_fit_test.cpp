@@ -10,8 +10,8 @@
 #include <random>
 
 #include "fit/forward/indentation_model.h"
-#include "fit/forward/indenter.h"
 #include "fit/run_fit.h"
+#include "lab/indenter.h"
 #include "laboratory.h"
 #include "phantom.h"
 
@@ -85,9 +85,9 @@ TEST(IndentationCreep, ElasticIsTheClosedForms) {
   for (const auto& [indenter, depth] :
        {Case{kBall, 3e-5}, Case{{.shape = IndenterShape::flat, .radius = 3e-3}, 3e-6},
         Case{{.shape = IndenterShape::cone, .half_angle = 88.0 * std::numbers::pi / 180.0}, 1e-4}}) {
-    const double force = modulus * thick_layer_force(indenter, depth);
+    const double force = modulus * lab::thick_layer_force(indenter, depth);
     for (const double d : indentation_depths(tissue, indenter, {}, times, std::vector<double>(3, force)))
-      EXPECT_NEAR(d / depth, 1.0, 0.01) << words_of(indenter);
+      EXPECT_NEAR(d / depth, 1.0, 0.01) << lab::words_of(indenter);
   }
 }
 
@@ -109,12 +109,12 @@ TEST(IndentationCreep, IsTheCreepFunctionOfLeeAndRadok) {  // long
   double worst = 0.0;
   for (const Indenter& indenter : indenters) {
     const double depth = indenter.shape == IndenterShape::flat ? 1e-6 : 3e-5;
-    const std::vector<double> forces(times.size(), 4000.0 * thick_layer_force(indenter, depth));
+    const std::vector<double> forces(times.size(), 4000.0 * lab::thick_layer_force(indenter, depth));
     const std::vector<double> creeping = indentation_depths(relaxing, indenter, {}, times, forces),
                               retarded = indentation_depths(viscous, indenter, {}, times, forces);
     const double rest = indentation_depths(elastic, indenter, {}, times, forces).back();
     for (std::size_t i = 0; i < times.size(); ++i) {
-      const auto load = [&](double d) { return std::pow(d / rest, depth_power(indenter.shape)); };
+      const auto load = [&](double d) { return std::pow(d / rest, lab::depth_power(indenter.shape)); };
       const double J = 1.0 - 1.5 * std::expm1(-0.4 * times[i] / 5.0), K = -std::expm1(-times[i] / 2.0);
       worst = std::max({worst, std::abs(load(creeping[i]) / J - 1.0), std::abs(load(retarded[i]) - K)});
     }

@@ -9,9 +9,10 @@
 #include <sstream>
 
 #include "../support/scene_runs.h"
-#include "fit/fit_spec.h"
 #include "fit/insertion/baseline.h"
 #include "fit/insertion/insertion_run.h"
+#include "fit/run_fit.h"
+#include "fit/spec/fit_spec.h"
 #include "glisson/fit.h"
 #include "phantom.h"
 

@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "fit/data/load_curves.h"
-#include "fit/fit_curves.h"
-#include "fit/fit_spec.h"
+#include "fit/laws/fit_curves.h"
+#include "fit/spec/fit_spec.h"
 #include "laboratory.h"
 #include "phantom.h"
 

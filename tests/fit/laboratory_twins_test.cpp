@@ -8,8 +8,8 @@
 #include <memory>
 #include <numbers>
 
-#include "fit/fit_curves.h"
 #include "fit/forward/indentation_model.h"
+#include "fit/laws/fit_curves.h"
 #include "fit/search/least_squares.h"
 #include "fit/uncertainty/covariance.h"
 #include "laboratory.h"

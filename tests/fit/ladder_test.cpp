@@ -123,7 +123,7 @@ TEST(Ladder, ReadsItsSections) {
       "kind = \"cylinder\"\ndiameter_mm = 50\nheight_mm = 30\nfaces = \"friction\"\nfriction = 0.2\n";
   EXPECT_EQ(read(specimen_section(), rubs, &s), "");
   ASSERT_TRUE(plates_of(s));
-  EXPECT_EQ(plates_of(s)->faces, Faces::friction);
+  EXPECT_EQ(plates_of(s)->faces, lab::Faces::friction);
   EXPECT_DOUBLE_EQ(plates_of(s)->grip.friction, 0.2);
   EXPECT_DOUBLE_EQ(plates_of(s)->radius, 0.025);
 }

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "fit/law_stability.h"
+#include "fit/laws/law_stability.h"
 
 namespace glisson::fit::law_stability_test {
 namespace {

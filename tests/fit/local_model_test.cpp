@@ -6,8 +6,8 @@
 #include <atomic>
 #include <cmath>
 
-#include "fit/search/local_problem.h"
 #include "fit/small_models.h"
+#include "fit/uncertainty/local_problem.h"
 
 namespace glisson::fit::local_model_test {
 namespace {

@@ -5,8 +5,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "fit/fit_spec.h"
-#include "fit/section_fit.h"
+#include "fit/spec/fit_spec.h"
+#include "fit/spec/section_fit.h"
 #include "scene/parse/allowed_range.h"
 #include "support/places.h"
 

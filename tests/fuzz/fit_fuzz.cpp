@@ -1,7 +1,7 @@
 // fit_fuzz.cpp — any text as the description of a fit: a sound one or a SceneError, nothing else.
 #include <cmath>
 
-#include "fit/fit_spec.h"
+#include "fit/spec/fit_spec.h"
 #include "glisson/scene/scene.h"
 #include "support.h"
 

@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "fit/data/raw_test.h"
-#include "fit/forward/indenter.h"
+#include "lab/indenter.h"
 
 namespace glisson::fit {
 namespace {
@@ -230,7 +230,7 @@ class UnitCheck {
   void check_indentation() {
     const double depth = span_of(test_.displacement), force = span_of(test_.force);
     if (!(depth > 0.0) || !(force > 0.0)) return;
-    check_modulus(test_.force_source, force, thick_layer_modulus(*test_.measurement.indenter, depth, force));
+    check_modulus(test_.force_source, force, lab::thick_layer_modulus(*test_.measurement.indenter, depth, force));
   }
 
   void check_stiffness() {

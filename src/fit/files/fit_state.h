@@ -9,7 +9,8 @@
 #include <optional>
 #include <string>
 
-#include "fit/run_fit.h"
+#include "fit/spec/fit_run.h"
+#include "fit/spec/fit_spec.h"
 
 namespace glisson {
 

@@ -51,10 +51,10 @@ struct BarrelModel::Known {
 };
 
 BarrelModel::BarrelModel(std::vector<Curve> curves, const Plates& plates, TissueAt tissue,
-                         std::vector<std::string> keys, const BarrelGrid& grid)
+                         std::vector<std::string> keys, const lab::BarrelGrid& grid)
     : MotionModel(curves), plates_(plates), tissue_(tissue), keys_(std::move(keys)),
       homogeneous_(std::move(curves), {area_of(plates), plates.height, plates.radius}, std::move(tissue)),
-      mesh_(std::make_shared<BarrelMesh>(plates.radius, plates.height, grid)) {
+      mesh_(std::make_shared<lab::BarrelMesh>(plates.radius, plates.height, grid)) {
   for (std::size_t c = 0; c < this->curves(); ++c) {
     if (!goes_along(curve(c))) continue;
     reach(curve(c));
@@ -65,7 +65,7 @@ BarrelModel::BarrelModel(std::vector<Curve> curves, const Plates& plates, Tissue
 /// How far a curve goes to either side.
 void BarrelModel::reach(const Curve& curve) {
   const double outward = curve.measurement.outward(), more = curve.measurement.loaded() ? kBeyondCreep : 1.0;
-  const bool only_presses = plates_.faces == Faces::friction || curve.measurement.test == LabTest::compression;
+  const bool only_presses = plates_.faces == lab::Faces::friction || curve.measurement.test == LabTest::compression;
   for (const double d : curve.measurement.loaded() ? curve.force : curve.displacement) {
     const double out = outward * more * d;
     pressed_ = std::max(pressed_, -out);
@@ -80,7 +80,7 @@ void BarrelModel::require_curve(const Curve& curve) const {
   };
   if (m.measured == Measured::cauchy)
     refuse("true stress has no one area between faces that do not slide freely; give columns.stress or columns.force");
-  if (plates_.faces != Faces::friction) return;
+  if (plates_.faces != lab::Faces::friction) return;
   if (m.test == LabTest::cyclic)
     refuse(
         "friction is that of a compression that goes on; crop the file to its loading and give test = "
@@ -97,8 +97,8 @@ std::vector<double> BarrelModel::of_tissue(std::span<const double> values) const
   return rest;
 }
 
-Grip BarrelModel::grip(std::span<const double> values) const {
-  Grip g = plates_.grip;
+lab::Grip BarrelModel::grip(std::span<const double> values) const {
+  lab::Grip g = plates_.grip;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (keys_[i] == kFrictionKey) g.friction = values[i];
     if (keys_[i] == kAdhesionKey) g.adhesion = values[i];
@@ -131,7 +131,7 @@ std::vector<double> BarrelModel::factors_at(const std::vector<double>& strains, 
     throw std::invalid_argument("a stretch of " + detail::number_text(1.0 + strains.back()) +
                                 " between the plates; allowed: " + detail::number_text(kLeast) + " to " +
                                 detail::number_text(kMost));
-  Barrel barrel(mesh_, *tissue.hyperelastic, plates_.faces, grip(values));
+  lab::Barrel barrel(mesh_, *tissue.hyperelastic, plates_.faces, grip(values));
   UniaxialPath path(tissue);
   path.start(0.0);
   std::vector<double> factors;

@@ -15,16 +15,16 @@
 #include <optional>
 #include <string>
 
-#include "fit/forward/barrel.h"
 #include "fit/forward/specimen_model.h"
+#include "lab/barrel.h"
 
 namespace glisson::fit {
 
 /// A round specimen and how its faces meet the plates.
 struct Plates {
   double radius = 0.0, height = 0.0;  ///< [m], > 0
-  Faces faces = Faces::bonded;
-  Grip grip;  ///< what of it is no parameter
+  lab::Faces faces = lab::Faces::bonded;
+  lab::Grip grip;  ///< what of it is no parameter
 };
 
 /// Keys of parameters that belong to the plates.
@@ -36,7 +36,7 @@ class BarrelModel final : public MotionModel {
   /// @param keys  of the values; those of the plates are taken here, the others go on to `tissue` in their order
   /// @throws std::invalid_argument for curves that such a specimen cannot make
   BarrelModel(std::vector<Curve> curves, const Plates& plates, TissueAt tissue, std::vector<std::string> keys = {},
-              const BarrelGrid& grid = {});
+              const lab::BarrelGrid& grid = {});
   Prediction predict_from(std::size_t curve, std::span<const double> values, double contact) const override;
 
  private:
@@ -51,14 +51,14 @@ class BarrelModel final : public MotionModel {
   void reach(const Curve& curve);
 
   std::vector<double> of_tissue(std::span<const double> values) const;
-  Grip grip(std::span<const double> values) const;
+  lab::Grip grip(std::span<const double> values) const;
 
   Plates plates_;
   TissueAt tissue_;
   std::vector<std::string> keys_;
   SpecimenModel homogeneous_;
   double pressed_ = 0.0, pulled_ = 0.0;  ///< the farthest that curves go to either side, ≥ 0 [m]
-  std::shared_ptr<const BarrelMesh> mesh_;
+  std::shared_ptr<const lab::BarrelMesh> mesh_;
   mutable std::mutex mutex_;
   mutable std::deque<std::shared_ptr<Known>> known_;
 };

@@ -7,7 +7,7 @@
 #include "base/require_fields.h"
 #include "base/text.h"
 #include "fit/forward/indentation_model.h"
-#include "fit/forward/indenter.h"
+#include "lab/indenter.h"
 
 namespace glisson::fit {
 namespace {
@@ -53,8 +53,8 @@ std::vector<double> answers(const Curve& curve, const Tissue& tissue, const Laye
 /// The depth of a force on a thick layer of little strain, without branches [m].
 double thick_layer_depth(const Tissue& tissue, const Indenter& indenter, double force) {
   if (!tissue.hyperelastic) return 1e-4;  // the model says what is wrong
-  const double unit = thick_layer_force(indenter, 1.0) * 4.0 * shear_modulus(*tissue.hyperelastic);
-  return std::pow(force / unit, 1.0 / depth_power(indenter.shape));
+  const double unit = lab::thick_layer_force(indenter, 1.0) * 4.0 * shear_modulus(*tissue.hyperelastic);
+  return std::pow(force / unit, 1.0 / lab::depth_power(indenter.shape));
 }
 
 }  // namespace

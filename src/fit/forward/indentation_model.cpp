@@ -46,18 +46,18 @@ class ElasticForce {
         factor_(places(indenter, deepest), values(indenter, factors)) {}
 
   double at(double depth) const {
-    return depth > 0.0 ? modulus_ * thick_layer_force(indenter_, depth) * std::exp(factor_.at(depth)) : 0.0;
+    return depth > 0.0 ? modulus_ * lab::thick_layer_force(indenter_, depth) * std::exp(factor_.at(depth)) : 0.0;
   }
   double slope(double depth) const {
-    return depth > 0.0 ? at(depth) * (depth_power(indenter_.shape) / depth + factor_.slope(depth)) : 0.0;
+    return depth > 0.0 ? at(depth) * (lab::depth_power(indenter_.shape) / depth + factor_.slope(depth)) : 0.0;
   }
   /// The depth of a force; beyond the deepest by the power of the closed form, as at() is.
   double depth_at(double force) const {
     const double most = at(deepest_);
     if (!(force > 0.0)) return 0.0;
-    if (force >= most) return deepest_ * std::pow(force / most, 1.0 / depth_power(indenter_.shape));
+    if (force >= most) return deepest_ * std::pow(force / most, 1.0 / lab::depth_power(indenter_.shape));
     const auto miss = [&](double d) { return std::pair(at(d) - force, slope(d)); };
-    const double guess = deepest_ * std::pow(force / most, 1.0 / depth_power(indenter_.shape));
+    const double guess = deepest_ * std::pow(force / most, 1.0 / lab::depth_power(indenter_.shape));
     constexpr int kDigits = std::numeric_limits<double>::digits - 4;
     return boost::math::tools::newton_raphson_iterate(miss, guess, 0.0, deepest_, kDigits);
   }
@@ -187,7 +187,8 @@ IndentationModel::IndentationModel(std::vector<Curve> curves, const Layer& layer
   const std::vector<std::size_t> active = of_law(parameters);
   for (const auto& own : indenting_) {
     if (!(own->deepest > 0.0))
-      throw std::invalid_argument("the curves under " + words_of(own->indenter) + " never press; check their depth");
+      throw std::invalid_argument("the curves under " + lab::words_of(own->indenter) +
+                                  " never press; check their depth");
     own->table = std::make_unique<LawTable>(
         parameters, active, [this, o = own.get()](std::span<const double> values) { return factors(*o, values); },
         options_.table ? kTableError : 0.0);
@@ -214,11 +215,11 @@ std::vector<std::size_t> IndentationModel::of_law(const std::vector<Parameter>& 
 std::vector<double> IndentationModel::factors(const Indenting& own, std::span<const double> values) const {
   const Tissue tissue = tissue_(values);
   const HyperelasticLaw& law = law_of(tissue);
-  IndentedLayer layer(layer_, own.indenter, law, own.deepest, options_.fineness);
+  lab::IndentedLayer layer(layer_, own.indenter, law, own.deepest, options_.fineness);
   std::vector<double> list;
   for (const double part : depths_of(own.indenter)) {
     const double depth = part * own.deepest;
-    list.push_back(std::log(layer.press(depth) / (plane_modulus(law) * thick_layer_force(own.indenter, depth))));
+    list.push_back(std::log(layer.press(depth) / (plane_modulus(law) * lab::thick_layer_force(own.indenter, depth))));
   }
   return list;
 }

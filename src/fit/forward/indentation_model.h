@@ -13,10 +13,10 @@
 #include <memory>
 #include <vector>
 
-#include "fit/forward/indented_layer.h"
 #include "fit/forward/law_table.h"
 #include "fit/forward/specimen_model.h"
 #include "instruments/motion/monotone_cubic.h"
+#include "lab/indented_layer.h"
 
 namespace glisson::fit {
 

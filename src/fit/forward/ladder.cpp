@@ -148,7 +148,7 @@ struct Maker {
     const TissueAt tissue = tissue_at(inner);
     return tissue ? with_offsets(std::make_shared<SpecimenModel>(problem.curves, size, tissue)) : nullptr;
   }
-  std::shared_ptr<const Model> barrel(const BarrelGrid& grid) const {
+  std::shared_ptr<const Model> barrel(const lab::BarrelGrid& grid) const {
     std::vector<std::string> of_tissue;
     std::copy_if(inner.begin(), inner.end(), std::back_inserter(of_tissue),
                  [](const std::string& key) { return !is_plate_key(key); });

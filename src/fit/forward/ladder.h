@@ -14,7 +14,7 @@
 
 #include "fit/forward/scene_model.h"
 #include "fit/forward/section_forward.h"
-#include "fit/model.h"
+#include "fit/model/model.h"
 
 namespace glisson::fit {
 

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "fit/model.h"
+#include "fit/model/model.h"
 
 namespace glisson::fit {
 

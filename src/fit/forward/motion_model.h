@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "fit/model.h"
+#include "fit/model/model.h"
 #include "glisson/fit.h"
 #include "instruments/motion/monotone_cubic.h"
 

@@ -17,7 +17,7 @@
 #include "fit/forward/force_record.h"
 #include "fit/forward/motion_model.h"
 #include "fit/forward/steady_press.h"
-#include "fit/kept_results.h"
+#include "fit/model/kept_results.h"
 #include "scene/build/parametric_variant.h"
 
 namespace glisson::fit {

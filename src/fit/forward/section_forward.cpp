@@ -48,12 +48,12 @@ SectionSpec cylinder_kind() {
   Section<SpecimenSpec> s("cylinder", "Round.");
   s.key<Milli>("diameter_mm", &SpecimenSpec::diameter, "diameter").in("mm").within(above(0)).must();
   s.key<Milli>("height_mm", &SpecimenSpec::height, "height at rest").in("mm").within(above(0)).must();
-  s.choice<Faces>(
-      "faces", &SpecimenSpec::faces,
-      {{"smooth", Faces::smooth, "they slide freely: the specimen deforms alike all over"},
-       {"friction", Faces::friction, "they slide against adhesion and Coulomb's friction, and the specimen bulges"},
-       {"bonded", Faces::bonded, "they do not slide"}},
-      "how its faces meet the plates");
+  s.choice<lab::Faces>("faces", &SpecimenSpec::faces,
+                       {{"smooth", lab::Faces::smooth, "they slide freely: the specimen deforms alike all over"},
+                        {"friction", lab::Faces::friction,
+                         "they slide against adhesion and Coulomb's friction, and the specimen bulges"},
+                        {"bonded", lab::Faces::bonded, "they do not slide"}},
+                       "how its faces meet the plates");
   s.key(
        "friction", [](SpecimenSpec & x) -> auto& { return x.grip.friction; },
        "coefficient of friction of faces = \"friction\"; `specimen.friction` may be a parameter")
@@ -127,7 +127,7 @@ Specimen specimen_of(const SpecimenSpec& spec) {
 }
 
 std::optional<Plates> plates_of(const SpecimenSpec& spec) {
-  if (spec.shape != SpecimenShape::cylinder || spec.faces == Faces::smooth) return {};
+  if (spec.shape != SpecimenShape::cylinder || spec.faces == lab::Faces::smooth) return {};
   return Plates{0.5 * spec.diameter, spec.height, spec.faces, spec.grip};
 }
 

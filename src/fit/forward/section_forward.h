@@ -6,8 +6,8 @@
 #include <string>
 
 #include "fit/forward/barrel_model.h"
-#include "fit/forward/layer_mesh.h"
 #include "fit/forward/specimen_model.h"
+#include "glisson/indentation.h"
 #include "glisson/simulation/simulation.h"
 #include "scene/parse/schema.h"
 
@@ -35,8 +35,8 @@ enum class SpecimenShape { cylinder, block, point, layer };
 /// A specimen of a laboratory, in place of a scene.
 struct SpecimenSpec {
   SpecimenShape shape = SpecimenShape::cylinder;
-  Faces faces = Faces::smooth;                      ///< of a cylinder
-  Grip grip;                                        ///< of its faces
+  lab::Faces faces = lab::Faces::smooth;            ///< of a cylinder
+  lab::Grip grip;                                   ///< of its faces
   double diameter = 0.05;                           ///< of a cylinder [m], > 0
   double width = 0.02, depth = 0.02;                ///< of a block [m], > 0
   double height = 0.03;                             ///< [m], > 0

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "fit/data/data_spec.h"
-#include "fit/insertion/insertion_spec.h"
+#include "fit/spec/insertion_spec.h"
 
 namespace glisson::fit {
 

@@ -1,7 +1,8 @@
 // run_insertion_fit.h — a fit of [insertion] from its description to its result.
 #pragma once
 
-#include "fit/run_fit.h"
+#include "fit/spec/fit_run.h"
+#include "fit/spec/fit_spec.h"
 
 namespace glisson::fit {
 

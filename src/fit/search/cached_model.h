@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "fit/kept_results.h"
-#include "fit/model.h"
+#include "fit/model/kept_results.h"
+#include "fit/model/model.h"
 #include "glisson/fit.h"
 
 namespace glisson::fit {

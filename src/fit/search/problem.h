@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "fit/model.h"
+#include "fit/model/model.h"
 #include "fit/search/loss.h"
 #include "glisson/fit.h"
 

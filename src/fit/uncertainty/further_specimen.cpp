@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "fit/algebra/decompositions.h"
-#include "fit/fit_curves.h"
+#include "fit/model/curve_kinds.h"
 
 namespace glisson::fit {
 namespace {

@@ -1,9 +1,9 @@
 #include "fit/uncertainty/left_out.h"
 
-#include "fit/fit_curves.h"
-
 #include <cmath>
 #include <limits>
+
+#include "fit/model/curve_kinds.h"
 
 namespace glisson::fit {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "base/symmetric_eigen.h"
 #include "fit/algebra/decompositions.h"
-#include "fit/fit_curves.h"
+#include "fit/model/curve_kinds.h"
 #include "fit/uncertainty/distribution.h"
 
 namespace glisson::fit {

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 
-#include "fit/fit_curves.h"
 #include "fit/search/multi_start.h"
 
 namespace glisson::fit {

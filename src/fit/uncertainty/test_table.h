@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "fit/model.h"
+#include "fit/model/model.h"
 #include "fit/search/least_squares.h"
 #include "fit/search/problem.h"
 

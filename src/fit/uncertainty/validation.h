@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "fit/model.h"
+#include "fit/model/model.h"
 #include "glisson/fit.h"
 
 namespace glisson::fit {
