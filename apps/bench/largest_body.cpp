@@ -5,7 +5,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "cli/mesh_cache.h"
+#include "program/mesh_cache.h"
 #include "scene/converge/refine_variant.h"
 
 namespace glisson::app {

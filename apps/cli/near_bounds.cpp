@@ -3,7 +3,7 @@
 #include <string>
 
 #include "base/text.h"
-#include "cli/standard_streams.h"
+#include "program/standard_streams.h"
 #include "scene/parse/select.h"
 
 namespace glisson::app {

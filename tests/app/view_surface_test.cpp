@@ -5,8 +5,8 @@
 #include "app/program.h"
 #include "material/shape_measure.h"
 #include "view/engine/live_body.h"
-#include "view/engine/surface.h"
 #include "view/protocol/messages.h"
+#include "view/state/surface.h"
 
 namespace glisson::view::view_surface_test {
 namespace {

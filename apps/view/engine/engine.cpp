@@ -7,7 +7,8 @@
 
 #include "report/instrument_json.h"
 #include "report/json_text.h"
-#include "view/engine/kept_memory.h"
+#include "view/state/surface.h"
+#include "view/thread/kept_memory.h"
 
 namespace glisson::view {
 namespace {

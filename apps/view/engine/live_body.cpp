@@ -7,6 +7,7 @@
 
 #include "base/two_across.h"
 #include "dynamics/simulation_parts.h"
+#include "view/state/surface.h"
 
 namespace glisson::view {
 namespace {
@@ -45,17 +46,6 @@ std::optional<ToolPath> scene_way(const InstrumentSpec& spec) {
 }
 
 }  // namespace
-
-double diagonal(const TetMesh& mesh) {
-  Vec3d low = mesh.vertices.front(), high = low;
-  for (const Vec3d& x : mesh.vertices) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], x[k]);
-      high[k] = std::max(high[k], x[k]);
-    }
-  }
-  return norm(high - low);
-}
 
 LiveBody::LiveBody(const Variant& variant, const MeshLoader& load) : variant_(variant) {
   if (variant.tools.size() + variant.instruments.size() > kMostTools) {

@@ -9,7 +9,7 @@
 #include "view/engine/grab_spring.h"
 #include "view/engine/hand_cut.h"
 #include "view/engine/live_path.h"
-#include "view/engine/snapshot.h"
+#include "view/state/snapshot.h"
 
 namespace glisson::view {
 
@@ -81,8 +81,5 @@ class LiveBody {
   std::optional<HandCut::Kept> uncut_;  ///< the blade when the body was made
   std::size_t hand_cuts_ = 0;
 };
-
-/// Of the box about a mesh [m].
-double diagonal(const TetMesh& mesh);
 
 }  // namespace glisson::view

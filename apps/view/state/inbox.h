@@ -7,8 +7,8 @@
 #include <condition_variable>
 #include <mutex>
 
-#include "view/protocol/command.h"
-#include "view/server/ring.h"
+#include "view/state/command.h"
+#include "view/thread/ring.h"
 
 namespace glisson::view {
 

@@ -1,4 +1,4 @@
-#include "cli/standard_streams.h"
+#include "program/standard_streams.h"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "cli/exit_code.h"
+#include "program/exit_code.h"
 
 namespace glisson::app {
 namespace {

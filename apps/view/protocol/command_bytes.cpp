@@ -1,5 +1,5 @@
-// command.cpp — see command.h.
-#include "view/protocol/command.h"
+// command_bytes.cpp — see command_bytes.h.
+#include "view/protocol/command_bytes.h"
 
 #include <bit>
 #include <cmath>

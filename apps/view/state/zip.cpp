@@ -1,7 +1,7 @@
 // zip.cpp — see zip.h.
 //
 //   local head, content │ local head, content │ … │ directory: a head for each │ end: where the directory is
-#include "view/protocol/zip.h"
+#include "view/state/zip.h"
 
 #include <boost/crc.hpp>
 #include <limits>

@@ -1,5 +1,5 @@
 // recording.cpp — see recording.h.
-#include "view/engine/recording.h"
+#include "view/state/recording.h"
 
 #include <algorithm>
 #include <cctype>

@@ -1,5 +1,5 @@
 // scene_options.cpp — see scene_options.h.
-#include "cli/scene_options.h"
+#include "program/scene_options.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <thread>
 
-#include "cli/option_check.h"
-#include "cli/standard_streams.h"
+#include "program/option_check.h"
+#include "program/standard_streams.h"
 #include "report/json_text.h"
 
 namespace glisson::app {

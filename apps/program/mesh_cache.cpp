@@ -1,13 +1,13 @@
 // mesh_cache.cpp — see mesh_cache.h.
-#include "cli/mesh_cache.h"
+#include "program/mesh_cache.h"
 
 #include <fmt/format.h>
 
 #include <cstdio>
 #include <filesystem>
 
-#include "cli/standard_streams.h"
 #include "glisson/io.h"
+#include "program/standard_streams.h"
 
 namespace glisson::app {
 

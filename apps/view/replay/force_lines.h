@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "view/engine/snapshot.h"
+#include "view/state/snapshot.h"
 
 namespace glisson::view {
 

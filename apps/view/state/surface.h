@@ -13,10 +13,13 @@
 #include <vector>
 
 #include "element/body.h"
-#include "view/engine/snapshot.h"
-#include "view/protocol/command.h"
+#include "view/state/command.h"
+#include "view/state/snapshot.h"
 
 namespace glisson::view {
+
+/// Of the box about a mesh [m].
+double diagonal(const TetMesh& mesh);
 
 class Surface {
  public:

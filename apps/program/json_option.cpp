@@ -1,11 +1,11 @@
 // json_option.cpp — see json_option.h.
-#include "bench/json_option.h"
+#include "program/json_option.h"
 
 #include <fmt/format.h>
 
 #include <filesystem>
 
-#include "cli/standard_streams.h"
+#include "program/standard_streams.h"
 #include "report/json_text.h"
 #include "report/output_file.h"
 

@@ -1,5 +1,5 @@
 // force_lines.cpp — see force_lines.h.
-#include "view/protocol/force_lines.h"
+#include "view/replay/force_lines.h"
 
 #include <algorithm>
 #include <charconv>

@@ -1,5 +1,5 @@
 // embedded.cpp — see embedded.h; the bytes come from embedded.S.in, the list of scene files from apps/CMakeLists.txt.
-#include "cli/embedded.h"
+#include "program/embedded.h"
 
 #include <map>
 #include <stdexcept>

@@ -7,12 +7,13 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "view/engine/snapshot.h"
-#include "view/protocol/zip.h"
+#include "view/state/snapshot.h"
+#include "view/state/zip.h"
 
 namespace glisson::view {
 
@@ -61,6 +62,11 @@ class Recording {
   bool full_ = false, gap_ = false;
   double grabbed_ = -1.0, cut_ = -1.0, changed_ = -1.0;  ///< first time of each [s]; -1: never
 };
+
+/// Names the files of a recording's archive: scene.toml, a way of each tool, forces.csv. Their contents are made when they are
+/// asked for, by any thread. @param parameters  as the body has them now
+using RecordingWriter =
+    std::function<std::vector<ZipFile>(std::shared_ptr<const Recording>, const std::vector<double>& parameters)>;
 
 /// Name of the file that holds the way of a tool, without what a file's name may not hold.
 std::string way_file(const std::vector<ToolInfo>& tools, std::size_t tool);

@@ -1,5 +1,5 @@
 // kept_memory.cpp — see kept_memory.h.
-#include "view/engine/kept_memory.h"
+#include "view/thread/kept_memory.h"
 
 #include <algorithm>
 #include <cstdlib>

@@ -1,5 +1,5 @@
 // realtime_command.cpp — glisson bench realtime: whether a scene keeps pace with a clock, and by how much.
-#include "bench/realtime_command.h"
+#include "cli/realtime_command.h"
 
 #include <fmt/format.h>
 
@@ -13,21 +13,21 @@
 
 #include "bench/bench_text.h"
 #include "bench/isa_option.h"
-#include "bench/json_option.h"
 #include "bench/largest_body.h"
 #include "bench/realtime.h"
-#include "cli/exit_code.h"
-#include "cli/interrupt.h"
-#include "cli/mesh_cache.h"
-#include "cli/option_check.h"
-#include "cli/scene_options.h"
-#include "cli/standard_streams.h"
+#include "program/exit_code.h"
+#include "program/interrupt.h"
+#include "program/json_option.h"
+#include "program/mesh_cache.h"
+#include "program/option_check.h"
+#include "program/scene_options.h"
+#include "program/standard_streams.h"
 #include "report/summary_json.h"
 
 namespace glisson::app {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kRealtimeFooter =
     "Steps the scene at wall-clock pace: one frame of simulated time per frame of the clock, then the tool's force.\n"
     "A frame whose computing takes longer than a frame is missed; overdue frames are dropped,\n"
     "and the simulated time falls behind by them. Writes nothing but FILE; energies are not computed.\n"
@@ -39,7 +39,7 @@ constexpr const char* kFooter =
 
 constexpr std::size_t kMostEventful = 20;  // lines of events
 
-struct Options {
+struct RealtimeArguments {
   SceneOptions scene;
   double seconds = 10.0, frame_ms = 1.0;
   int threads = 0;
@@ -48,7 +48,7 @@ struct Options {
 };
 
 /// The one variant that is run.
-Variant choose_variant(const Options& options) {
+Variant choose_variant(const RealtimeArguments& options) {
   const Scene scene = open_scene(options.scene);
   if (options.scene.variants.size() > 1) throw std::invalid_argument("--variant: bench realtime runs one variant");
   Variant variant = scene.variants.front();
@@ -119,7 +119,7 @@ int exit_code_of(const RealtimeResult& result, const BuiltVariant& body) {
   return kNumericalEnd;
 }
 
-int find(const Options& options, const Variant& variant) {
+int find(const RealtimeArguments& options, const Variant& variant) {
   const RealtimeOptions pace{.seconds = options.seconds, .frame_s = 1e-3 * options.frame_ms};
   std::vector<int> threads{options.threads};
   if (options.threads == 0) threads = {1, static_cast<int>(std::max(1U, std::thread::hardware_concurrency()))};
@@ -152,7 +152,7 @@ int find(const Options& options, const Variant& variant) {
   return kDone;
 }
 
-int realtime(const Options& options) {
+int realtime(const RealtimeArguments& options) {
   take_isa(options.isa);
   const Variant variant = choose_variant(options);
   catch_interrupts();
@@ -172,7 +172,7 @@ int realtime(const Options& options) {
 
 CLI::App* add_realtime(CLI::App& bench, Action& action) {
   CLI::App* command = bench.add_subcommand("realtime", "run a scene at wall-clock pace and time its frames");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RealtimeArguments>();
   add_scene_options(*command, options->scene);
   command->add_option("--seconds", options->seconds, "wall time, or until the scene's motion ends if that is sooner")
       ->type_name("S")
@@ -190,7 +190,7 @@ CLI::App* add_realtime(CLI::App& bench, Action& action) {
                     "look for the largest body, by the cells of the scene's mesh, that keeps the pace for --seconds");
   add_isa_option(*command, options->isa, "kernels");
   add_json_option(*command, options->json);
-  command->footer(kFooter);
+  command->footer(kRealtimeFooter);
   command->callback([options, &action] { action = [options] { return realtime(*options); }; });
   return command;
 }

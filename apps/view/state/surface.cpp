@@ -1,5 +1,5 @@
 // surface.cpp — see surface.h.
-#include "view/engine/surface.h"
+#include "view/state/surface.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,6 @@
 #include "element/tet_fields.h"
 #include "material/shape_measure.h"
 #include "report/field_values.h"
-#include "view/engine/live_body.h"
 
 namespace glisson::view {
 namespace {
@@ -25,6 +24,17 @@ Mat3d gradient(const std::vector<Vec3d>& displacement, const Tet& tet, const std
 }
 
 }  // namespace
+
+double diagonal(const TetMesh& mesh) {
+  Vec3d low = mesh.vertices.front(), high = low;
+  for (const Vec3d& x : mesh.vertices) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], x[k]);
+      high[k] = std::max(high[k], x[k]);
+    }
+  }
+  return norm(high - low);
+}
 
 Surface::Surface(std::shared_ptr<const BodyShape> shape, bool whole) : shape_(std::move(shape)) {
   number_vertices();

@@ -1,5 +1,5 @@
 // interrupt.cpp — see interrupt.h.
-#include "cli/interrupt.h"
+#include "program/interrupt.h"
 
 #include <csignal>
 

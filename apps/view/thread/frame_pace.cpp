@@ -1,5 +1,5 @@
 // frame_pace.cpp — see frame_pace.h.
-#include "view/engine/frame_pace.h"
+#include "view/thread/frame_pace.h"
 
 #include <algorithm>
 #include <thread>

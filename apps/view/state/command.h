@@ -1,17 +1,9 @@
-// command.h — what a viewer may ask for, and the bytes that say so.
-//
-//   kind u8 │ tool u8 │ 0 u16 │ sequence u32 │ payload            little-endian; docs/view.md has the payloads
-//
-// A message is read in one place, into plain numbers within their ranges, or refused with a reason; nothing of it is
-// kept. view_fuzz.cpp feeds it any bytes.
+// command.h — what a viewer may ask for: plain numbers within their ranges. view/protocol/command_bytes.h reads them from messages.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <span>
-#include <string>
-#include <variant>
 
 namespace glisson::view {
 
@@ -51,20 +43,9 @@ inline constexpr std::size_t kFields = 6;
 /// Whether a field follows from the stress.
 constexpr bool is_of_stress(Field field) { return field == Field::pressure || field == Field::von_mises; }
 
-/// No message is longer [bytes].
-inline constexpr std::size_t kLongestCommand = 36;
 /// Lengths and speeds beyond are refused, whatever the scene [m], [m/s].
 inline constexpr float kFarthest = 100.0f, kFastest = 10.0f;
 /// Times and rates of a recorded run beyond are refused [s], [-].
 inline constexpr float kLatest = 1e9f, kSlowestRate = 1e-4f, kFastestRate = 1e3f;
-
-/// A place of a tool, a hand or a blade that makes no sense: it is counted, and the last good one stays.
-struct BadPlace {
-  std::string why;
-};
-
-/// @return the command, or why the bytes are none
-std::variant<Command, BadPlace, std::string> decode_command(std::span<const std::uint8_t> bytes);
-std::string encode_command(const Command& command);
 
 }  // namespace glisson::view

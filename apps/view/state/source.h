@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "view/engine/snapshot.h"
-#include "view/protocol/command.h"
+#include "view/state/command.h"
+#include "view/state/snapshot.h"
 
 namespace glisson::view {
 

@@ -1,4 +1,4 @@
-#include "cli/option_check.h"
+#include "program/option_check.h"
 
 #include <algorithm>
 #include <charconv>
