@@ -1,6 +1,6 @@
 #include "bench/isa_option.h"
 
-#include "engine/kernels/instruction_set.h"
+#include "glisson/simulation/instruction_set.h"
 #include "program/option_check.h"
 
 namespace glisson::app {

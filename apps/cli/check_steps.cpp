@@ -11,7 +11,7 @@
 
 #include "cli/branches_note.h"
 #include "cli/progress.h"
-#include "material/linear_law.h"
+#include "glisson/material/linear_law.h"
 #include "program/standard_streams.h"
 
 namespace glisson::app {

@@ -13,6 +13,8 @@
 #include "cli/convergence_report.h"
 #include "cli/progress.h"
 #include "cli/run_end.h"
+#include "glisson/scene/convergence_order.h"
+#include "glisson/scene/convergence_variant.h"
 #include "program/embedded.h"
 #include "program/exit_code.h"
 #include "program/interrupt.h"
@@ -23,8 +25,6 @@
 #include "program/standard_streams.h"
 #include "report/output_folder.h"
 #include "report/report_page.h"
-#include "scene/converge/edge_order.h"
-#include "scene/converge/refine_variant.h"
 
 namespace glisson::app {
 namespace {

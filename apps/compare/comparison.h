@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "glisson/scene/convergence.h"
 #include "glisson/scene/scene.h"
 #include "models/rival.h"
-#include "scene/converge/grid_convergence.h"
 
 namespace glisson::app {
 

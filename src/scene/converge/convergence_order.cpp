@@ -1,4 +1,4 @@
-#include "scene/converge/edge_order.h"
+#include "glisson/scene/convergence_order.h"
 
 #include <algorithm>
 #include <array>

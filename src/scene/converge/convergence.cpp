@@ -1,4 +1,4 @@
-#include "scene/converge/grid_convergence.h"
+#include "glisson/scene/convergence.h"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 
 #include "glisson/scene/scene.h"
 
-namespace glisson::scene {
+namespace glisson {
 
 struct RecordedPaths {
   std::string head;                ///< comment lines for the top, without their #
@@ -25,4 +25,4 @@ struct RecordedPaths {
 std::string recorded_scene(std::string_view text, const std::string& name, const std::filesystem::path& base,
                            std::span<const Override> overrides, const Variant& variant, const RecordedPaths& ways);
 
-}  // namespace glisson::scene
+}  // namespace glisson

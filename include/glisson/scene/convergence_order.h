@@ -1,4 +1,4 @@
-// edge_order.h — the highest order by which a force can converge, from the singular edges of a body, its supports and tools.
+// convergence_order.h — the highest order by which a force can converge, from the singular edges of a body, its supports and tools.
 //
 // Displacements near an edge grow as r^λ across it. Their energy, and with it the force of a tool that is driven, has an error of
 // the order 2 λ in the size of cells, at most 2 for linear tets. λ follows from the angle ω of the body at the edge and from what

@@ -1,5 +1,5 @@
-// linear_law.h — the linear law that a tissue comes to where its deformation is small and slow: what adaptive precision takes in
-// the tissue's place (engine/precision_choice.h).
+// linear_law.h — the linear law that a tissue comes to where its deformation is small and slow: what adaptive precision
+// (glisson/simulation/precision.h) takes in its place.
 #pragma once
 
 #include "glisson/material/tissue.h"

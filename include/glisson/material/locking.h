@@ -5,7 +5,7 @@
 
 #include "glisson/material/tissue.h"
 
-namespace glisson::scene {
+namespace glisson {
 
 /// Poisson's ratio at rest of a tissue whose tets keep their own volumes and lock by it (docs/laws.md §5); none: they do not,
 /// or share their volumes already.
@@ -17,4 +17,4 @@ inline std::optional<double> locking_ratio(const Tissue& tissue) {
   return nu;
 }
 
-}  // namespace glisson::scene
+}  // namespace glisson

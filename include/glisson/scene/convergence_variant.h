@@ -1,4 +1,4 @@
-// refine_variant.h — a variant on a finer mesh of the same body.
+// convergence_variant.h — a variant on a finer mesh of the same body.
 #pragma once
 
 #include <optional>

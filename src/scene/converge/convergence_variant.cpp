@@ -1,4 +1,4 @@
-#include "scene/converge/refine_variant.h"
+#include "glisson/scene/convergence_variant.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include "glisson/pose.h"
 #include "glisson/scene/scene.h"
 
-namespace glisson::scene {
+namespace glisson {
 
 /// A point of the body [m]: the given one, or the middle of the volume of a region or of the whole body.
 /// @throws std::invalid_argument naming a region that is not there, or has no tet
@@ -28,4 +28,4 @@ struct PathMeeting {
 /// Whether an instrument meets the body at rest by a time; none where its path depends on the force on it.
 std::optional<PathMeeting> meets_body(const InstrumentSpec& instrument, const TetMesh& mesh, double until);
 
-}  // namespace glisson::scene
+}  // namespace glisson

@@ -1,9 +1,9 @@
-// grid_convergence.h — what finer and finer meshes say of the result on none of them.
+// convergence.h — what finer and finer meshes say of the result on none of them.
 //
 //   f(h) ≈ f₀ + C h^p        three meshes give the observed order p [Roache1994], also where their sizes do not fall by one factor
 //                            [Celik2008]; two give none, and p = 1 is assumed
 //
-// An observed order is believed up to that which the geometry allows, P ≤ 2 (edge_order.h): on coarse meshes errors of higher order
+// An observed order is believed up to that which the geometry allows, P ≤ 2 (convergence_order.h): on coarse meshes errors of higher order
 // hide the singular ones, which remain. With the step to the limit s(p) = (f₁ − f₂)/(r^p − 1), r = h₂/h₁, f₁ of the finest mesh,
 //
 //   f₀ = f₁ + s(min(p, P))        within  f₁ + s(max(min(p, 2), P))/F  and  f₁ + F s(min(p, P)),  F = 1.5
@@ -45,7 +45,7 @@ struct GridConvergence {
 };
 
 /// @param results  of one quantity, from the coarsest mesh to the finest; two or more, of which the last three count
-/// @param largest_order  P of the body's edges, in [1, 2] (edge_order.h)
+/// @param largest_order  P of the body's edges, in [1, 2] (convergence_order.h)
 /// @throws std::invalid_argument for fewer, sizes that do not fall, or another order
 GridConvergence grid_convergence(std::span<const MeshResult> results, double largest_order = 2.0);
 
