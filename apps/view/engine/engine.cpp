@@ -401,10 +401,10 @@ void Engine::publish() {
   const std::span<const Vec3d> u = simulation.displacement(), v = simulation.velocity();
   state.displacement.assign(u.begin(), u.end());
   state.velocity.clear();
-  state.branches.clear();
+  state.branches = {};
   if (want_stress_.load(std::memory_order_relaxed)) {
     state.velocity.assign(v.begin(), v.end());
-    state.branches = body_->branches();
+    state.branches = BranchRecord(simulation);
   }
   state.contact_pressure.clear();
   if (want_contact_.load(std::memory_order_relaxed)) state.contact_pressure = simulation.contact_fields().pressure;

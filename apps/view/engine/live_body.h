@@ -54,8 +54,6 @@ class LiveBody {
   std::array<double, 2> aside(std::size_t tool) const;
   ToolState tool_state(std::size_t tool) const;
   std::shared_ptr<const BodyShape> shape() const;
-  /// What the Maxwell branches of each tissue block hold now.
-  std::vector<BranchMemory> branches() const;
   const std::shared_ptr<const std::map<int, Tissue>>& tissues() const { return tissues_; }
   /// Changes when the shape does: a scene's blade makes vertices, capsules tear, and nothing here removes tets.
   std::size_t shape_key() const {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "element/branch_memory.h"
 #include "glisson/scene/scene.h"
+#include "glisson/simulation/part_fields.h"
 #include "report/body_surface.h"
 
 namespace glisson::view {
@@ -70,17 +70,11 @@ struct LiveEvent {
   double time = 0.0, depth = 0.0;
 };
 
-/// Where the Maxwell branches of a tet are in Snapshot::branches.
-struct BranchPlace {
-  std::uint32_t block = 0, element = 0;  ///< counted from the block's first
-};
-
 /// The body's mesh; another one from a cut or a removal on.
 struct BodyShape {
-  TetMesh mesh;                       ///< at rest, without removed tets; vertex numbers are those of the displacement
-  std::vector<std::uint8_t> marks;    ///< per vertex: 1 held, 2 driven, 0 free
-  std::vector<BranchPlace> branches;  ///< per tet; empty of a recorded run
-  std::vector<Triangle> torn{};       ///< of capsules
+  TetMesh mesh;                     ///< at rest, without removed tets; vertex numbers are those of the displacement
+  std::vector<std::uint8_t> marks;  ///< per vertex: 1 held, 2 driven, 0 free
+  std::vector<Triangle> torn{};     ///< of capsules
   std::shared_ptr<const SkinFaces> skin{};  ///< of the body when it was made; none: nothing has been cut
 };
 
@@ -96,8 +90,8 @@ struct Snapshot {
   std::shared_ptr<const BodyShape> shape;
   std::shared_ptr<const std::map<int, Tissue>> tissues;  ///< by region number; another one from a change on
   std::vector<Vec3d> displacement;
-  std::vector<Vec3d> velocity;         ///< where someone wants to see the stress, else empty
-  std::vector<BranchMemory> branches;  ///< of each tissue block, where someone wants to see the stress, else empty
+  std::vector<Vec3d> velocity;  ///< where someone wants to see the stress, else empty
+  BranchRecord branches;        ///< where someone wants to see the stress, else none
   std::vector<double>
       contact_pressure;  ///< per vertex [Pa], where someone wants to see it and something touches, else empty
   std::vector<ToolState> tools;

@@ -6,8 +6,8 @@
 #include <limits>
 #include <numeric>
 
-#include "element/tet_fields.h"
-#include "material/shape_measure.h"
+#include "glisson/material/shape_measure.h"
+#include "glisson/tet_gradient.h"
 #include "report/field_values.h"
 
 namespace glisson::view {
@@ -148,65 +148,17 @@ std::vector<double> Surface::field(Field field, const Snapshot& state) {
   return mean([&](std::size_t i) { return intensity_of(blunt(i)); });
 }
 
-/// A mean over a vertex needs all tets around it: those at the surface alone have inner vertices, too.
-void Surface::build_near_body(const std::map<int, Tissue>& tissues) {
-  const TetMesh& mesh = shape_->mesh;
-  near_tets_.clear();
-  std::vector<char> met(mesh.tets.size(), 0), touched(mesh.vertices.size(), 0);
-  for (const NearTet& x : near_) {
-    near_tets_.push_back(x.number);
-    met[x.number] = 1;
-    for (const std::uint32_t v : x.tet) touched[v] = 1;
-  }
-  const bool shares = std::any_of(tissues.begin(), tissues.end(), [](const auto& of_region) {
-    return of_region.second.volume_change == VolumeChange::average_nodal;
-  });
-  for (std::uint32_t t = 0; shares && t < mesh.tets.size(); ++t) {
-    const Tet& tet = mesh.tets[t];
-    const bool touches = std::any_of(tet.begin(), tet.end(), [&](std::uint32_t v) { return touched[v] != 0; });
-    if (met[t] == 0 && touches) near_tets_.push_back(t);
-  }
-  TetMesh near;
-  near.vertices = mesh.vertices;
-  for (const std::uint32_t t : near_tets_) {
-    near.tets.push_back(mesh.tets[t]);
-    near.regions.push_back(mesh.region_of(t));
-    if (!mesh.fibres.empty()) near.fibres.push_back(Vec3d(mesh.fibres[t]));
-  }
-  near_body_ = std::make_unique<Body>(build_body(near, tissues));
-}
-
-/// Of the blocks of the body near the surface; none where nobody has asked for them before this state.
-std::vector<BranchMemory> Surface::near_branches(const Snapshot& state) const {
-  if (state.branches.empty() || shape_->branches.empty()) return {};
-  std::vector<BranchMemory> memory(near_body_->blocks.size());
-  for (std::size_t b = 0; b < memory.size(); ++b) {
-    const TissueBlock& block = near_body_->blocks[b];
-    for (std::size_t e = block.begin; e < block.end; ++e) {
-      const BranchPlace& at = shape_->branches[near_tets_[near_body_->mesh_tet[e]]];
-      const BranchMemory& all = state.branches[at.block];
-      memory[b].branches = all.branches;
-      const auto take = [&](const auto& from, auto& to) {
-        const auto first = from.begin() + static_cast<std::ptrdiff_t>(at.element * all.branches);
-        to.insert(to.end(), first, first + static_cast<std::ptrdiff_t>(all.branches));
-      };
-      take(all.held, memory[b].held);
-      take(all.left, memory[b].left);
-      memory[b].linear.push_back(all.linear_share(at.element));
-    }
-  }
-  return memory;
-}
-
 std::vector<double> Surface::of_stress(Field field, const Snapshot& state) {
-  if (!near_body_ || tissues_ != state.tissues) {
-    build_near_body(*state.tissues);
+  if (!near_fields_ || tissues_ != state.tissues) {
+    std::vector<std::uint32_t> tets;
+    for (const NearTet& x : near_) tets.push_back(x.number);
+    near_fields_.emplace(shape_->mesh, *state.tissues, std::move(tets));
     tissues_ = state.tissues;
   }
   const std::size_t vertices = shape_->mesh.vertices.size();  // those that came after this shape are at its end
   const std::vector<Vec3d> at_rest(state.velocity.size() < vertices ? vertices : 0);
   const std::vector<Vec3d>& velocity = at_rest.empty() ? state.velocity : at_rest;
-  const TetFields fields = tet_fields(*near_body_, state.displacement, velocity, near_branches(state));
+  const TetFields fields = near_fields_->fields(state.displacement, velocity, state.branches);
   const std::vector<double> values =
       field == Field::pressure ? pressure_of(fields.stress) : von_mises_of(fields.stress);
   return mean([&](std::size_t i) { return values[i]; });

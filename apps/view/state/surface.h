@@ -9,10 +9,10 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "element/body.h"
 #include "view/state/command.h"
 #include "view/state/snapshot.h"
 
@@ -65,8 +65,6 @@ class Surface {
   template <class OfTet>
   std::vector<double> mean(OfTet of_tet) const;
   std::vector<double> of_stress(Field field, const Snapshot& state);
-  void build_near_body(const std::map<int, Tissue>& tissues);
-  std::vector<BranchMemory> near_branches(const Snapshot& state) const;
 
   struct NearTet {
     Tet tet;
@@ -84,9 +82,8 @@ class Surface {
   std::vector<double> tets_around_;    ///< of each surface vertex
   std::size_t pieces_ = 0;
   double rim_ = 0.0;
-  std::shared_ptr<const std::map<int, Tissue>> tissues_;  ///< that near_body_ is of
-  std::unique_ptr<Body> near_body_;  ///< of the tets with a vertex at the surface, and of those they take means with
-  std::vector<std::uint32_t> near_tets_;  ///< numbers of its tets in the shape's mesh, those of `near_` first
+  std::shared_ptr<const std::map<int, Tissue>> tissues_;  ///< that near_fields_ are of
+  std::optional<PartFields> near_fields_;                 ///< of the tets with a vertex at the surface
 };
 
 }  // namespace glisson::view
