@@ -60,7 +60,7 @@ macro(glisson_import_libraries folder)
       add_library(${target} ALIAS built::${short})
     endif()
   endforeach()
-  foreach(room IN ITEMS base dynamics)  # of which the modules see the inside
+  foreach(room IN ITEMS base)  # whose helpers the modules use
     add_library(room_${room} ALIAS built::room_${room})
   endforeach()
 endmacro()

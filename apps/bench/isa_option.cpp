@@ -1,7 +1,7 @@
 #include "bench/isa_option.h"
 
-#include "cli/option_check.h"
-#include "engine/kernels/instruction_set.h"
+#include "glisson/simulation/instruction_set.h"
+#include "program/option_check.h"
 
 namespace glisson::app {
 

@@ -5,8 +5,8 @@
 #include <map>
 #include <stdexcept>
 
-#include "cli/mesh_cache.h"
-#include "scene/converge/refine_variant.h"
+#include "glisson/scene/convergence_variant.h"
+#include "program/mesh_cache.h"
 
 namespace glisson::app {
 namespace {

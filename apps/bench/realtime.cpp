@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "bench/percentile.h"
-#include "view/engine/kept_memory.h"
+#include "view/thread/kept_memory.h"
 
 namespace glisson::app {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "glisson/scene/scene.h"
-#include "view/engine/frame_pace.h"
+#include "view/thread/frame_pace.h"
 
 namespace glisson::app {
 

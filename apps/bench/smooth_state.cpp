@@ -7,8 +7,6 @@
 #include <cstdint>
 #include <numbers>
 
-#include "mesh/inspect/nearest_point.h"
-
 namespace glisson::app {
 namespace {
 
@@ -50,7 +48,7 @@ Wave random_wave(Sequence& random, const Vec3d& size, double gradient) {
 }
 
 std::vector<Vec3d> waves(const TetMesh& mesh, double gradient, std::uint64_t seed) {
-  const auto [low, high] = detail::box_of(mesh);
+  const auto [low, high] = glisson::box_of(mesh);
   Sequence random(seed);
   std::array<Wave, kWaves> all;
   for (Wave& wave : all) wave = random_wave(random, high - low, gradient / std::sqrt(double{kWaves}));

@@ -9,8 +9,8 @@
 #include <thread>
 #include <vector>
 
-#include "cli/interrupt.h"
 #include "cli/progress.h"
+#include "program/interrupt.h"
 #include "report/summary_json.h"
 
 namespace glisson::app {

@@ -8,8 +8,8 @@
 #include <thread>
 #include <utility>
 
-#include "cli/exit_code.h"
-#include "cli/standard_streams.h"
+#include "program/exit_code.h"
+#include "program/standard_streams.h"
 
 namespace glisson::app {
 

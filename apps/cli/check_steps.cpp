@@ -11,8 +11,8 @@
 
 #include "cli/branches_note.h"
 #include "cli/progress.h"
-#include "cli/standard_streams.h"
-#include "material/linear_law.h"
+#include "glisson/material/linear_law.h"
+#include "program/standard_streams.h"
 
 namespace glisson::app {
 namespace {

@@ -12,14 +12,14 @@
 
 #include "bench/bench_text.h"
 #include "bench/isa_option.h"
-#include "bench/json_option.h"
 #include "bench/measure.h"
-#include "bench/realtime_command.h"
 #include "cli/commands.h"
-#include "cli/exit_code.h"
-#include "cli/mesh_cache.h"
-#include "cli/option_check.h"
-#include "cli/standard_streams.h"
+#include "cli/realtime_command.h"
+#include "program/exit_code.h"
+#include "program/json_option.h"
+#include "program/mesh_cache.h"
+#include "program/option_check.h"
+#include "program/standard_streams.h"
 
 namespace glisson::app {
 namespace {

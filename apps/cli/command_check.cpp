@@ -15,18 +15,16 @@
 #include "cli/check_steps.h"
 #include "cli/commands.h"
 #include "cli/edge_cells.h"
-#include "cli/exit_code.h"
-#include "cli/mesh_cache.h"
 #include "cli/near_bounds.h"
 #include "cli/progress.h"
-#include "cli/scene_options.h"
-#include "cli/standard_streams.h"
 #include "cli/tissue_text.h"
-#include "instruments/needle/membranes.h"
-#include "mesh/inspect/vertex_set.h"
+#include "glisson/material/locking.h"
+#include "glisson/scene/body_places.h"
+#include "program/exit_code.h"
+#include "program/mesh_cache.h"
+#include "program/scene_options.h"
+#include "program/standard_streams.h"
 #include "report/summary_json.h"
-#include "scene/build/body_places.h"
-#include "scene/build/locking.h"
 
 namespace glisson::app {
 namespace {
@@ -158,7 +156,7 @@ void print_zone(const Variant& v, const InstrumentSpec& instrument, const TetMes
 
 /// That linear tets lock in a tissue, and the key that mends it.
 void print_locking(const std::string& table, const Tissue& t) {
-  const std::optional<double> nu = scene::locking_ratio(t);
+  const std::optional<double> nu = locking_ratio(t);
   if (!nu) return;
   say("  locking  ν = {:.3g} with volume_change = \"element\": tets that keep their own volumes are too stiff;\n"
       "           {}.volume_change = \"average_nodal\" mends it\n",
@@ -212,7 +210,7 @@ void print_start(const InstrumentSpec& x, const TetMesh& mesh) {
 
 /// That an instrument's path passes the body by.
 void print_meeting(const Variant& v, const InstrumentSpec& x, const TetMesh& mesh) {
-  const std::optional<scene::PathMeeting> meeting = scene::meets_body(x, mesh, run_duration(v));
+  const std::optional<PathMeeting> meeting = meets_body(x, mesh, run_duration(v));
   if (!meeting || meeting->meets) return;
   say("  misses   \"{}\" never meets the body at rest: its tip passes {:.3g} mm from it; move `tip_m`, turn "
       "`direction`, move\n           deeper, or give `aim` in place of `tip_m`, which finds the body\n",

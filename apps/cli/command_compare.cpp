@@ -4,15 +4,15 @@
 #include <filesystem>
 #include <memory>
 
-#include "bench/json_option.h"
 #include "cli/commands.h"
 #include "cli/comparison_report.h"
-#include "cli/exit_code.h"
-#include "cli/interrupt.h"
-#include "cli/mesh_cache.h"
-#include "cli/scene_options.h"
-#include "cli/standard_streams.h"
 #include "compare/problem_json.h"
+#include "program/exit_code.h"
+#include "program/interrupt.h"
+#include "program/json_option.h"
+#include "program/mesh_cache.h"
+#include "program/scene_options.h"
+#include "program/standard_streams.h"
 #include "report/json_text.h"
 #include "report/output_file.h"
 #include "report/output_folder.h"

@@ -8,23 +8,23 @@
 #include <memory>
 #include <optional>
 
-#include "bench/json_option.h"
 #include "cli/batch.h"
 #include "cli/commands.h"
 #include "cli/convergence_report.h"
-#include "cli/embedded.h"
-#include "cli/exit_code.h"
-#include "cli/interrupt.h"
-#include "cli/mesh_cache.h"
-#include "cli/option_check.h"
 #include "cli/progress.h"
 #include "cli/run_end.h"
-#include "cli/scene_options.h"
-#include "cli/standard_streams.h"
+#include "glisson/scene/convergence_order.h"
+#include "glisson/scene/convergence_variant.h"
+#include "program/embedded.h"
+#include "program/exit_code.h"
+#include "program/interrupt.h"
+#include "program/json_option.h"
+#include "program/mesh_cache.h"
+#include "program/option_check.h"
+#include "program/scene_options.h"
+#include "program/standard_streams.h"
 #include "report/output_folder.h"
 #include "report/report_page.h"
-#include "scene/converge/edge_order.h"
-#include "scene/converge/refine_variant.h"
 
 namespace glisson::app {
 namespace {

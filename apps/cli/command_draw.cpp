@@ -5,7 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/drawing.h"
-#include "cli/exit_code.h"
+#include "program/exit_code.h"
 
 namespace glisson::app {
 namespace {

@@ -7,10 +7,10 @@
 #include <string>
 
 #include "cli/commands.h"
-#include "cli/exit_code.h"
-#include "cli/option_check.h"
-#include "cli/standard_streams.h"
 #include "glisson/io.h"
+#include "program/exit_code.h"
+#include "program/option_check.h"
+#include "program/standard_streams.h"
 #include "report/json_text.h"
 
 namespace glisson::app {

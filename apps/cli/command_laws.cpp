@@ -8,10 +8,10 @@
 
 #include "base/unit_range.h"
 #include "cli/commands.h"
-#include "cli/exit_code.h"
-#include "cli/standard_streams.h"
 #include "glisson/material/hyperelastic_law.h"
 #include "glisson/material/stiffness_law.h"
+#include "program/exit_code.h"
+#include "program/standard_streams.h"
 
 namespace glisson::app {
 namespace {

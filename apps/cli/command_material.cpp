@@ -10,14 +10,14 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/exit_code.h"
 #include "cli/material_picture.h"
 #include "cli/material_tests.h"
-#include "cli/option_check.h"
-#include "cli/scene_options.h"
-#include "cli/standard_streams.h"
 #include "cli/tissue_text.h"
 #include "glisson/scene/tissue_presets.h"
+#include "program/exit_code.h"
+#include "program/option_check.h"
+#include "program/scene_options.h"
+#include "program/standard_streams.h"
 #include "report/json_text.h"
 #include "report/output_file.h"
 

@@ -10,17 +10,17 @@
 #include <optional>
 
 #include "base/text.h"
-#include "bench/json_option.h"
 #include "cli/commands.h"
-#include "cli/exit_code.h"
-#include "cli/interrupt.h"
-#include "cli/mesh_cache.h"
 #include "cli/progress.h"
-#include "cli/scene_options.h"
-#include "cli/standard_streams.h"
 #include "glisson/io.h"
 #include "glisson/scene/surface_file.h"
 #include "glisson/simulation/mesh_step.h"
+#include "program/exit_code.h"
+#include "program/interrupt.h"
+#include "program/json_option.h"
+#include "program/mesh_cache.h"
+#include "program/scene_options.h"
+#include "program/standard_streams.h"
 
 namespace glisson::app {
 namespace {

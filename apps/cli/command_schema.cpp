@@ -5,11 +5,11 @@
 #include <string>
 
 #include "cli/commands.h"
-#include "cli/exit_code.h"
-#include "cli/option_check.h"
-#include "cli/standard_streams.h"
 #include "fit/spec/fit_spec.h"
 #include "glisson/scene/scene.h"
+#include "program/exit_code.h"
+#include "program/option_check.h"
+#include "program/standard_streams.h"
 
 namespace glisson::app {
 

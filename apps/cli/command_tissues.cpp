@@ -6,10 +6,10 @@
 #include <string>
 
 #include "cli/commands.h"
-#include "cli/exit_code.h"
-#include "cli/standard_streams.h"
 #include "cli/tissue_text.h"
 #include "glisson/scene/tissue_presets.h"
+#include "program/exit_code.h"
+#include "program/standard_streams.h"
 #include "report/json_text.h"
 
 namespace glisson::app {

@@ -6,15 +6,16 @@
 #include <thread>
 
 #include "cli/commands.h"
-#include "cli/embedded.h"
-#include "cli/exit_code.h"
-#include "cli/interrupt.h"
-#include "cli/mesh_cache.h"
-#include "cli/option_check.h"
-#include "cli/scene_options.h"
-#include "cli/standard_streams.h"
 #include "glisson/version.h"
+#include "program/embedded.h"
+#include "program/exit_code.h"
+#include "program/interrupt.h"
+#include "program/mesh_cache.h"
+#include "program/option_check.h"
+#include "program/scene_options.h"
+#include "program/standard_streams.h"
 #include "view/engine/engine.h"
+#include "view/engine/scene_writer.h"
 #include "view/replay/replay.h"
 #include "view/server/server.h"
 

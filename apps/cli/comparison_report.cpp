@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cli/embedded.h"
+#include "program/embedded.h"
 #include "report/report_page.h"
 
 namespace glisson::app {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/converge/grid_convergence.h"
+#include "glisson/scene/convergence.h"
 
 namespace glisson::app {
 

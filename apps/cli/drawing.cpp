@@ -13,8 +13,8 @@
 #include <system_error>
 #include <vector>
 
-#include "cli/embedded.h"
-#include "cli/exit_code.h"
+#include "program/embedded.h"
+#include "program/exit_code.h"
 #include "report/json_text.h"
 
 namespace glisson::app {

@@ -6,8 +6,8 @@
 #include <cstdio>
 
 #include "cli/progress.h"
-#include "cli/standard_streams.h"
 #include "fit/data/units.h"
+#include "program/standard_streams.h"
 
 namespace glisson::app {
 namespace {

@@ -10,7 +10,7 @@
 #include <new>
 #include <string>
 
-#include "cli/exit_code.h"
+#include "program/exit_code.h"
 
 namespace glisson::app {
 

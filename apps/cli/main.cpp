@@ -13,14 +13,14 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/exit_code.h"
 #include "cli/last_words.h"
-#include "cli/option_check.h"
 #include "cli/program_path.h"
-#include "cli/standard_streams.h"
 #include "glisson/io.h"
 #include "glisson/scene/scene.h"
 #include "glisson/version.h"
+#include "program/exit_code.h"
+#include "program/option_check.h"
+#include "program/standard_streams.h"
 #include "report/output_file.h"
 
 namespace {

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "cli/embedded.h"
 #include "cli/tissue_text.h"
+#include "program/embedded.h"
 #include "report/report_page.h"
 
 namespace glisson::app {

@@ -3,8 +3,8 @@
 #include <string>
 
 #include "base/text.h"
-#include "cli/standard_streams.h"
-#include "scene/build/select.h"
+#include "glisson/scene/near_bounds.h"
+#include "program/standard_streams.h"
 
 namespace glisson::app {
 namespace {
@@ -14,7 +14,7 @@ constexpr std::size_t kShare = 100;  // one of so many just outside may be chanc
 std::string lies(std::size_t count) { return count == 1 ? "lies" : "lie"; }
 
 /// @param one, @param several  names of what is counted
-void print_near(const std::string& label, const scene::NearBounds& near, const char* one, const char* several) {
+void print_near(const std::string& label, const NearBounds& near, const char* one, const char* several) {
   if (near.by_rounding > 0) {
     say("  {}: {}, {} of them outside of its bounds by rounding alone: what lies within {:.2g} mm of these counts\n",
         label, detail::count_text(near.inside, one, several), near.by_rounding, 1e3 * near.tolerance);
@@ -30,10 +30,10 @@ void print_near(const std::string& label, const scene::NearBounds& near, const c
 
 void print_near_bounds(const Variant& variant, const TetMesh& mesh) {
   for (const auto& [name, selection] : variant.sets) {
-    print_near("set      \"" + name + "\"", scene::near_bounds(mesh, selection), "vertex", "vertices");
+    print_near("set      \"" + name + "\"", near_bounds(mesh, selection), "vertex", "vertices");
   }
   for (const RegionSpec& region : variant.regions) {
-    print_near("region   \"" + region.name + "\"", scene::near_bounds(mesh, region), "tet", "tets");
+    print_near("region   \"" + region.name + "\"", near_bounds(mesh, region), "tet", "tets");
   }
 }
 

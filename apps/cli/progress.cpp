@@ -9,7 +9,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "cli/standard_streams.h"
+#include "program/standard_streams.h"
 
 namespace glisson::app {
 namespace {

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <string>
 
-#include "cli/exit_code.h"
-#include "cli/interrupt.h"
-#include "cli/standard_streams.h"
+#include "program/exit_code.h"
+#include "program/interrupt.h"
+#include "program/standard_streams.h"
 #include "report/summary_json.h"
 
 namespace glisson::app {

@@ -5,9 +5,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "cli/interrupt.h"
 #include "paper/curve_fit.h"
 #include "paper/figures.h"
+#include "program/interrupt.h"
 
 namespace glisson::app {
 namespace {

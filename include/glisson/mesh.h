@@ -7,6 +7,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "glisson/field.h"
@@ -113,6 +114,12 @@ TetMesh cylinder_mesh(const CylinderOptions& options);
 /// The boundary triangles of a mesh, outward oriented, in vertex numbers of the mesh and the order of its tets.
 /// @throws std::invalid_argument as inspect
 std::vector<Triangle> boundary_triangles(const TetMesh& mesh);
+
+/// Per vertex: 1 where it belongs to a tet; others have no mass and bear nothing.
+std::vector<char> vertices_in_tets(const TetMesh& mesh);
+
+/// Lowest and highest corner of the box around the tets of a mesh [m]. The mesh has at least one.
+std::pair<Vec3d, Vec3d> box_of(const TetMesh& mesh);
 
 /// Content and defects of a mesh; `warnings` describes the defects in sentences.
 struct MeshReport {

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "dynamics/simulation_parts.h"
+#include "glisson/simulation/simulation.h"
 
 namespace glisson::python {
 namespace {
@@ -132,13 +132,13 @@ StepStatus LiveSimulation::step(std::uint64_t n) {
 
 StepStatus LiveSimulation::advance(double until, const std::optional<std::function<void()>>& observer,
                                    std::optional<double> every) {
-  SimulationParts::refuse_inside_step(SimulationParts::inside(get()), "advance", false);
   if (!std::isfinite(until)) {
     throw nb::value_error(("advance: until = " + std::to_string(until) + " is not finite; give a time [s]").c_str());
   }
   if (every && !(*every > 0.0)) {
     throw nb::value_error(("advance: every = " + std::to_string(*every) + " is not positive; give a time [s]").c_str());
   }
+  get().advance_to(get().time());  // makes no step; throws where it was called from inside one
   StepStatus worst = StepStatus::ok;
   const auto before = [this](double time) {
     Simulation& s = own_ ? *own_ : built_->simulation;

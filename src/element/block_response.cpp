@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "element/element_shape.h"
-#include "material/linear_law.h"
+#include "glisson/material/linear_law.h"
 
 namespace glisson {
 

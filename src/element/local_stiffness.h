@@ -10,8 +10,8 @@
 #include <cmath>
 
 #include "element/body.h"
+#include "glisson/material/shape_measure.h"
 #include "material/modulus_laws.h"
-#include "material/shape_measure.h"
 #include "material/stiffness_formulas.h"
 
 namespace glisson {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "material/linear_law.h"
+#include "glisson/material/linear_law.h"
 
 namespace glisson::engine {
 namespace {

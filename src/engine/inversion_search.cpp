@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "material/shape_measure.h"
+#include "glisson/material/shape_measure.h"
 
 namespace glisson::engine {
 namespace {

@@ -1,6 +1,6 @@
 #include "engine/linear_twin.h"
 
-#include "material/linear_law.h"
+#include "glisson/material/linear_law.h"
 
 namespace glisson::engine {
 

@@ -1,4 +1,4 @@
-// linear_twin.h — a tissue's linear law (material/linear_law.h) as it is evaluated in lanes, and its own, for the two to be compared.
+// linear_twin.h — a tissue's linear law (glisson/material/linear_law.h) as it is evaluated in lanes, and its own, for the two to be compared.
 #pragma once
 
 #include "engine/tissue_plan.h"

@@ -7,8 +7,8 @@
 #include <iterator>
 
 #include "element/block_response.h"
-#include "engine/kernels/instruction_set.h"
 #include "engine/layout/archive_submeshes.h"
+#include "glisson/simulation/instruction_set.h"
 
 namespace glisson::engine {
 namespace {

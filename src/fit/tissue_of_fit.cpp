@@ -4,7 +4,7 @@
 
 #include "fit/data/units.h"
 #include "fit/forward/offset_model.h"
-#include "scene/build/locking.h"
+#include "glisson/material/locking.h"
 #include "scene/build/parametric_variant.h"
 #include "scene/parse/tissue_file.h"
 
@@ -80,7 +80,7 @@ namespace {
 /// How scenes have to keep the volume of a tissue that hardly changes it. A specimen was no body of tets; a scene was one, and
 /// its choice belongs to the numbers that were fitted with it.
 std::string volume_keys(const LawSearch& search, const FitSpec& spec, const scene::Node& tissue) {
-  if (tissue.find("volume_change") || !scene::locking_ratio(fitted_tissue(search))) return {};
+  if (tissue.find("volume_change") || !locking_ratio(fitted_tissue(search))) return {};
   if (spec.specimen) return "volume_change = \"" + std::string(word_of(VolumeChange::average_nodal)) + "\"\n";
   return "# fitted with volume_change = \"" + std::string(word_of(VolumeChange::element)) +
          "\", on the scene's mesh; for other meshes fit with \"" + std::string(word_of(VolumeChange::average_nodal)) +

@@ -8,7 +8,6 @@
 #include "base/text.h"
 #include "io/curved_tets.h"
 #include "io/raw_mesh.h"
-#include "mesh/inspect/nearest_point.h"
 #include "mesh/inspect/warnings.h"
 
 namespace glisson {

@@ -11,9 +11,9 @@
 
 #include <variant>
 
+#include "glisson/material/shape_measure.h"
 #include "material/hyperelastic_formulas.h"
 #include "material/principal.h"
-#include "material/shape_measure.h"
 #include "material/volume_powers.h"
 
 namespace glisson {

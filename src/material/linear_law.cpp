@@ -1,4 +1,4 @@
-#include "material/linear_law.h"
+#include "glisson/material/linear_law.h"
 
 namespace glisson {
 

@@ -6,10 +6,10 @@
 // one. T is double, or Dual for ∂P/∂F : dF. Written to be read: the engine's lanes are tested against it.
 #pragma once
 
+#include "glisson/material/shape_measure.h"
 #include "material/branch_pace.h"
 #include "material/dual.h"
 #include "material/modulus_laws.h"
-#include "material/shape_measure.h"
 #include "material/strain.h"
 #include "material/viscosity.h"
 

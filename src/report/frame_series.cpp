@@ -10,7 +10,6 @@
 
 #include "glisson/io.h"
 #include "material/strain.h"
-#include "mesh/inspect/nearest_point.h"
 #include "report/field_values.h"
 #include "report/output_file.h"
 #include "report/tool_surface.h"
@@ -55,7 +54,7 @@ Field strain_field(const TetMesh& mesh, std::span<const Vec3d> u) {
 
 /// The longest edge of the body's box at rest [m].
 double extent_of(const TetMesh& mesh) {
-  const auto [low, high] = detail::box_of(mesh);
+  const auto [low, high] = box_of(mesh);
   return std::max({high.x - low.x, high.y - low.y, high.z - low.z});
 }
 

@@ -11,8 +11,8 @@
 #include "compare/models/engine.h"
 #include "compare/viscous_reference.h"
 #include "glisson/mesh_refinement.h"
-#include "scene/converge/edge_order.h"
-#include "scene/converge/refine_variant.h"
+#include "glisson/scene/convergence_order.h"
+#include "glisson/scene/convergence_variant.h"
 
 namespace glisson::app {
 namespace {
@@ -196,7 +196,7 @@ double order_of(const Variant& variant, const Problem& problem) {
 }
 
 /// The scene's own tissue on all meshes: the finest is the reference, the others say how far it is from the limit of fine meshes.
-/// @param order  the highest that the body's edges allow (edge_order.h)
+/// @param order  the highest that the body's edges allow (convergence_order.h)
 Reference make_reference(const std::vector<Problem>& problems, double order, const std::atomic<bool>& stop,
                          const std::function<void(const std::string&)>& say) {
   if (models::is_viscous(problems.front())) return make_viscous_reference(problems, order, stop, say);

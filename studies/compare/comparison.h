@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "compare/models/rival.h"
+#include "glisson/scene/convergence.h"
 #include "glisson/scene/scene.h"
-#include "scene/converge/grid_convergence.h"
 
 namespace glisson::app {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-#include "scene/converge/refine_variant.h"
+#include "glisson/scene/convergence_variant.h"
 
 namespace glisson::app {
 namespace {

@@ -10,7 +10,7 @@ namespace glisson::app {
 /// and by how much the others differ. Each station's
 /// force is extrapolated to the limit of fine meshes for itself: tissue that has relaxed is less compressible, and coarse meshes are stiffer.
 /// @param problems  the same experiment from the coarsest mesh to the finest
-/// @param order  the highest that the body's edges allow (edge_order.h)
+/// @param order  the highest that the body's edges allow (convergence_order.h)
 /// @throws SceneError where no balance of forces is found
 Reference make_viscous_reference(const std::vector<models::Problem>& problems, double order,
                                  const std::atomic<bool>& stop, const std::function<void(const std::string&)>& say);

@@ -9,8 +9,8 @@
 #include "report/body_surface.h"
 #include "report/surface_recorder.h"
 #include "view/engine/live_body.h"
-#include "view/engine/surface.h"
 #include "view/protocol/messages.h"
+#include "view/state/surface.h"
 
 namespace glisson::test {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "view/protocol/command.h"
+#include "view/protocol/command_bytes.h"
 
 namespace glisson::test {
 

@@ -6,7 +6,7 @@
 
 #include "app/program.h"
 #include "view/engine/engine.h"
-#include "view/engine/surface.h"
+#include "view/state/surface.h"
 
 namespace glisson::view {
 namespace {

@@ -9,9 +9,9 @@
 #include "app/program.h"
 #include "glisson/io.h"
 #include "view/engine/engine.h"
-#include "view/protocol/command.h"
-#include "view/protocol/latest.h"
-#include "view/server/ring.h"
+#include "view/protocol/command_bytes.h"
+#include "view/thread/latest.h"
+#include "view/thread/ring.h"
 
 namespace glisson::view {
 namespace {

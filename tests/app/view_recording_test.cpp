@@ -7,9 +7,9 @@
 #include "app/program.h"
 #include "glisson/scene/scene.h"
 #include "view/engine/engine.h"
-#include "view/engine/recording.h"
 #include "view/engine/scene_writer.h"
-#include "view/protocol/zip.h"
+#include "view/state/recording.h"
+#include "view/state/zip.h"
 
 namespace glisson::test {
 namespace {

@@ -7,10 +7,10 @@
 
 #include "app/program.h"
 #include "glisson/io.h"
-#include "view/engine/surface.h"
-#include "view/protocol/force_lines.h"
+#include "view/replay/force_lines.h"
 #include "view/replay/replay.h"
 #include "view/replay/run_folder.h"
+#include "view/state/surface.h"
 
 namespace glisson::test {
 namespace {

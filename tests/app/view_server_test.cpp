@@ -10,8 +10,8 @@
 #include "app/program.h"
 #include "app/view_client.h"
 #include "view/engine/engine.h"
-#include "view/engine/lead.h"
 #include "view/server/access.h"
+#include "view/server/lead.h"
 #include "view/server/server.h"
 
 namespace glisson::view::view_server_test {

@@ -10,8 +10,8 @@
 #include "app/program.h"
 #include "view/engine/engine.h"
 #include "view/engine/live_body.h"
-#include "view/engine/surface.h"
 #include "view/protocol/messages.h"
+#include "view/state/surface.h"
 
 namespace glisson::view {
 namespace {

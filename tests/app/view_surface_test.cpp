@@ -3,10 +3,10 @@
 #include <cmath>
 
 #include "app/program.h"
-#include "material/shape_measure.h"
+#include "glisson/material/shape_measure.h"
 #include "view/engine/live_body.h"
-#include "view/engine/surface.h"
 #include "view/protocol/messages.h"
+#include "view/state/surface.h"
 
 namespace glisson::view::view_surface_test {
 namespace {
@@ -112,7 +112,7 @@ TEST(LiveSurface, ShowsThePressureOfTheForces) {
   simulation.set_state(u, std::vector<Vec3d>(u.size()));
   for (int i = 0; i < 20; ++i) ASSERT_TRUE(simulation.step().made());
   Snapshot state;
-  state.shape = body.shape(), state.tissues = body.tissues(), state.branches = body.branches();
+  state.shape = body.shape(), state.tissues = body.tissues(), state.branches = BranchRecord(simulation);
   state.displacement.assign(simulation.displacement().begin(), simulation.displacement().end());
   state.velocity.assign(simulation.velocity().begin(), simulation.velocity().end());
   Surface surface(state.shape);
@@ -133,7 +133,7 @@ TEST(LiveSurface, ShowsThePressureOfTheForces) {
     largest = std::max(largest, std::abs(expected[i]));
   }
   for (std::size_t i = 0; i < shown.size(); ++i) EXPECT_NEAR(shown[i], expected[i], 1e-9 * largest);
-  state.branches.clear();  // as if all had relaxed: another pressure, so the branches above counted
+  state.branches = {};  // as if all had relaxed: another pressure, so the branches above counted
   const std::vector<double> relaxed = surface.field(Field::pressure, state);
   for (std::size_t i = 0; i < shown.size(); ++i) without = std::max(without, std::abs(relaxed[i] - expected[i]));
   EXPECT_GT(without, 0.02 * largest);

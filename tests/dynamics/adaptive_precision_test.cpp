@@ -10,7 +10,7 @@
 #include "element/body.h"
 #include "element/element_shape.h"
 #include "glisson/instruments/motion.h"
-#include "material/linear_law.h"
+#include "glisson/material/linear_law.h"
 #include "material/response.h"
 #include "support/bodies.h"
 #include "support/must_step.h"

@@ -1,10 +1,10 @@
-// The measure in lanes is that of material/shape_measure.h: exact near rest, blind to rotation, 1 when inverted.
+// The measure in lanes is that of glisson/material/shape_measure.h: exact near rest, blind to rotation, 1 when inverted.
 #include <gtest/gtest.h>
 
 #include <memory>
 
 #include "engine/engine_run.h"
-#include "material/shape_measure.h"
+#include "glisson/material/shape_measure.h"
 
 namespace glisson {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "view/protocol/command.h"
+#include "view/protocol/command_bytes.h"
 #include "view/server/access.h"
 
 namespace {

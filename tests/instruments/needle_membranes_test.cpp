@@ -1,6 +1,6 @@
 // A membrane below the surface holds the tip at its depth until the tip pushes with its force, as a region's boundary there does;
 // drawn membranes have the stated statistics, and the same bytes everywhere.
-#include "instruments/needle/membranes.h"
+#include "glisson/instruments/needle.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The shape measures: their values on the cube split, what they are blind to, and their precision near rest.
-#include "material/shape_measure.h"
+#include "glisson/material/shape_measure.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

@@ -1,6 +1,6 @@
 // body_places_test.cpp — places that a scene finds from the body: where tools press and needles start on any body, however it lies; and what
 // passes a body by is said.
-#include "scene/build/body_places.h"
+#include "glisson/scene/body_places.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -120,11 +120,11 @@ motion = { kind = "press", depth_mm = 100 }
     const TetMesh mesh = placed(potato_as_made, random, i % 2 == 1);
     const auto load = [&](const MeshFile&) { return mesh; };
     const BuiltVariant built = build_variant(v, load);
-    const Vec3d middle = scene::body_point(mesh, {}), tip = start_pose(v.instruments[0], mesh).position;
+    const Vec3d middle = body_point(mesh, {}), tip = start_pose(v.instruments[0], mesh).position;
     expect_near(tip + Vec3d{0, 0.1, 0}, middle, 1e-12);
-    const auto meeting = scene::meets_body(v.instruments[0], mesh, 100.0);
+    const auto meeting = meets_body(v.instruments[0], mesh, 100.0);
     EXPECT_TRUE(meeting && meeting->meets);
-    const Vec3d met = scene::facing_point(mesh, {}, {0, 1, 0});
+    const Vec3d met = facing_point(mesh, {}, {0, 1, 0});
     EXPECT_LT(met.y, middle.y);
     for (const std::uint32_t p : built.simulation.mesh().vertex_set("press"))
       EXPECT_LT(norm(mesh.vertices[p] - met), 0.03) << "about where the line meets the surface";
@@ -166,9 +166,9 @@ TEST(Side, TakesAShareOfTheExtent) {
 }
 
 /// Whether a variant's instrument meets its body, and by how much not.
-std::optional<scene::PathMeeting> meeting_of(const std::string& text) {
+std::optional<PathMeeting> meeting_of(const std::string& text) {
   const Variant v = parse(text).variants.at(0);
-  return scene::meets_body(v.instruments.at(0), build_mesh(v, kNoFiles), run_duration(v));
+  return meets_body(v.instruments.at(0), build_mesh(v, kNoFiles), run_duration(v));
 }
 
 // Whether a path meets the body is known before it is run: for needles, shapes, blades, straight and turning; pushes depend on forces.

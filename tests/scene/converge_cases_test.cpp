@@ -13,10 +13,10 @@
 #include <sstream>
 
 #include "glisson/instruments/instrument.h"
+#include "glisson/scene/convergence.h"
+#include "glisson/scene/convergence_order.h"
+#include "glisson/scene/convergence_variant.h"
 #include "glisson/scene/scene.h"
-#include "scene/converge/edge_order.h"
-#include "scene/converge/grid_convergence.h"
-#include "scene/converge/refine_variant.h"
 #include "support/places.h"
 
 namespace glisson {

@@ -1,6 +1,6 @@
 // The extrapolation from several meshes: exact for f₀ + C h^p, wide where it is not, and true to three closed forms of
 // elasticity, whose force lies within the interval that it gives.
-#include "scene/converge/grid_convergence.h"
+#include "glisson/scene/convergence.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <numbers>
 
 #include "glisson/mesh_refinement.h"
-#include "scene/converge/edge_order.h"
-#include "scene/converge/refine_variant.h"
+#include "glisson/scene/convergence_order.h"
+#include "glisson/scene/convergence_variant.h"
 #include "scene/scene_text.h"
 
 namespace glisson {

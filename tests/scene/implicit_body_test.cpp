@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "scene/converge/refine_variant.h"
+#include "glisson/scene/convergence_variant.h"
 #include "scene/scene_text.h"
 
 namespace glisson {

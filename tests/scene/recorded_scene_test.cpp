@@ -1,5 +1,5 @@
 // A scene written with the tissues of a moment reads back to those tissues, whatever their law.
-#include "scene/run/recorded_scene.h"
+#include "glisson/scene/recorded_scene.h"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 
 #include "element/force_operator.h"
 #include "element/tet_fields.h"
+#include "glisson/material/shape_measure.h"
 #include "material/reference/reference.h"
-#include "material/shape_measure.h"
 #include "support/samples.h"
 
 namespace glisson {

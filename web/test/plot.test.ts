@@ -1,7 +1,7 @@
 // Small charts put numbers where their axes say, and ticks at round numbers inside them.
 import { describe, expect, it } from "vitest";
 import { nearestPoint, orderAlongX } from "../src/fit/plot/nearest_point.ts";
-import type { PointsMark } from "../src/fit/plot/plot.ts";
+import type { PointsMark } from "../src/fit/plot/marks.ts";
 import { makeScale, place, roundStep, scaleOf, tickValues, valueAt } from "../src/fit/plot/scale.ts";
 import { bandPath, dotPath, linePath } from "../src/fit/plot/trace.ts";
 

@@ -7,7 +7,8 @@
 
 #include "report/instrument_json.h"
 #include "report/json_text.h"
-#include "view/engine/kept_memory.h"
+#include "view/state/surface.h"
+#include "view/thread/kept_memory.h"
 
 namespace glisson::view {
 namespace {
@@ -400,10 +401,10 @@ void Engine::publish() {
   const std::span<const Vec3d> u = simulation.displacement(), v = simulation.velocity();
   state.displacement.assign(u.begin(), u.end());
   state.velocity.clear();
-  state.branches.clear();
+  state.branches = {};
   if (want_stress_.load(std::memory_order_relaxed)) {
     state.velocity.assign(v.begin(), v.end());
-    state.branches = body_->branches();
+    state.branches = BranchRecord(simulation);
   }
   state.contact_pressure.clear();
   if (want_contact_.load(std::memory_order_relaxed)) state.contact_pressure = simulation.contact_fields().pressure;

@@ -21,16 +21,16 @@
 #include <vector>
 
 #include "glisson/scene/scene.h"
-#include "view/engine/compute_times.h"
-#include "view/engine/frame_pace.h"
-#include "view/engine/inbox.h"
 #include "view/engine/live_body.h"
 #include "view/engine/live_parameters.h"
-#include "view/engine/snapshot.h"
-#include "view/protocol/command.h"
-#include "view/protocol/latest.h"
-#include "view/server/ring.h"
-#include "view/source.h"
+#include "view/state/command.h"
+#include "view/state/inbox.h"
+#include "view/state/snapshot.h"
+#include "view/state/source.h"
+#include "view/thread/compute_times.h"
+#include "view/thread/frame_pace.h"
+#include "view/thread/latest.h"
+#include "view/thread/ring.h"
 
 namespace glisson::view {
 

@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "base/two_across.h"
-#include "dynamics/simulation_parts.h"
+#include "view/state/surface.h"
 
 namespace glisson::view {
 namespace {
@@ -45,17 +45,6 @@ std::optional<ToolPath> scene_way(const InstrumentSpec& spec) {
 }
 
 }  // namespace
-
-double diagonal(const TetMesh& mesh) {
-  Vec3d low = mesh.vertices.front(), high = low;
-  for (const Vec3d& x : mesh.vertices) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], x[k]);
-      high[k] = std::max(high[k], x[k]);
-    }
-  }
-  return norm(high - low);
-}
 
 LiveBody::LiveBody(const Variant& variant, const MeshLoader& load) : variant_(variant) {
   if (variant.tools.size() + variant.instruments.size() > kMostTools) {
@@ -207,22 +196,7 @@ std::shared_ptr<const BodyShape> LiveBody::shape() const {
   for (const ToolSpec& x : variant_.tools) mark(x.set, 2);
   shape->skin = skin_;
   shape->torn = torn_triangles(built_->capsules);
-  const Body& body = SimulationParts::scheme(built_->simulation).body();
-  shape->branches.resize(shape->mesh.tets.size());  // nothing here removes tets: those of the mesh are all there
-  for (std::uint32_t b = 0; b < body.blocks.size(); ++b) {
-    const std::size_t begin = body.blocks[b].begin;
-    for (std::size_t e = begin; e < body.blocks[b].end; ++e) {
-      shape->branches[body.mesh_tet[e]] = {b, static_cast<std::uint32_t>(e - begin)};
-    }
-  }
   return shape;
-}
-
-std::vector<BranchMemory> LiveBody::branches() const {
-  const Scheme& scheme = SimulationParts::scheme(built_->simulation);
-  std::vector<BranchMemory> memory;
-  for (std::size_t b = 0; b < scheme.body().blocks.size(); ++b) memory.push_back(scheme.branch_memory(b));
-  return memory;
 }
 
 }  // namespace glisson::view

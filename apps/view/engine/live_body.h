@@ -9,7 +9,7 @@
 #include "view/engine/grab_spring.h"
 #include "view/engine/hand_cut.h"
 #include "view/engine/live_path.h"
-#include "view/engine/snapshot.h"
+#include "view/state/snapshot.h"
 
 namespace glisson::view {
 
@@ -54,8 +54,6 @@ class LiveBody {
   std::array<double, 2> aside(std::size_t tool) const;
   ToolState tool_state(std::size_t tool) const;
   std::shared_ptr<const BodyShape> shape() const;
-  /// What the Maxwell branches of each tissue block hold now.
-  std::vector<BranchMemory> branches() const;
   const std::shared_ptr<const std::map<int, Tissue>>& tissues() const { return tissues_; }
   /// Changes when the shape does: a scene's blade makes vertices, capsules tear, and nothing here removes tets.
   std::size_t shape_key() const {
@@ -81,8 +79,5 @@ class LiveBody {
   std::optional<HandCut::Kept> uncut_;  ///< the blade when the body was made
   std::size_t hand_cuts_ = 0;
 };
-
-/// Of the box about a mesh [m].
-double diagonal(const TetMesh& mesh);
 
 }  // namespace glisson::view

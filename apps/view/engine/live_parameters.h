@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "glisson/scene/scene.h"
-#include "view/engine/snapshot.h"
+#include "view/state/snapshot.h"
 
 namespace glisson::view {
 

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "glisson/scene/recorded_scene.h"
 #include "report/json_text.h"
-#include "scene/run/recorded_scene.h"
 #include "view/engine/live_parameters.h"
 
 namespace glisson::view {
@@ -39,10 +39,10 @@ std::vector<ZipFile> recording_files(const Scene& given, const Variant& variant,
   Variant now = variant;
   const std::vector<TissueParameter> handles = tissue_parameters(variant);
   for (std::size_t i = 0; i < parameters.size(); ++i) set_parameter(now, handles.at(i), parameters[i]);
-  scene::RecordedPaths ways{.head = head_of(given, variant, *recording),
-                            .files = {},
-                            .duration = recording->duration(),
-                            .sample_rate = 1000.0};
+  RecordedPaths ways{.head = head_of(given, variant, *recording),
+                     .files = {},
+                     .duration = recording->duration(),
+                     .sample_rate = 1000.0};
   std::vector<ZipFile> files;
   for (std::size_t i = 0; i < tools.size(); ++i) {
     ways.files.push_back(way_file(tools, i));
@@ -50,7 +50,7 @@ std::vector<ZipFile> recording_files(const Scene& given, const Variant& variant,
   }
   files.push_back({"forces.csv", [recording, tools](const TextSink& out) { recording->forces_csv(tools, out); }});
   const std::filesystem::path base = given.file.parent_path();
-  const std::string text = scene::recorded_scene(given.source, given.file.string(), base, overrides, now, ways);
+  const std::string text = recorded_scene(given.source, given.file.string(), base, overrides, now, ways);
   files.push_back(text_file("scene.toml", valid_utf8(text)));
   return files;
 }

@@ -1,21 +1,15 @@
 // scene_writer.h — a recording as files that `glisson run` goes again: the scene with ways in place of motions.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "glisson/scene/scene.h"
-#include "view/engine/recording.h"
-#include "view/engine/snapshot.h"
+#include "view/state/recording.h"
+#include "view/state/snapshot.h"
 
 namespace glisson::view {
-
-/// Names the files of a recording's archive: scene.toml, a way of each tool, forces.csv. Their contents are made when they are
-/// asked for, by any thread. @param parameters  as the body has them now
-using RecordingWriter =
-    std::function<std::vector<ZipFile>(std::shared_ptr<const Recording>, const std::vector<double>& parameters)>;
 
 /// @param scene     as it was opened; its source is what is written again
 /// @param variant   the one that is shown

@@ -5,10 +5,10 @@
 #include <deque>
 #include <string>
 
-#include "view/engine/scene_writer.h"
-#include "view/engine/snapshot.h"
-#include "view/engine/surface.h"
-#include "view/source.h"
+#include "view/state/recording.h"
+#include "view/state/snapshot.h"
+#include "view/state/source.h"
+#include "view/state/surface.h"
 
 namespace glisson::view {
 

@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "glisson/io.h"
-#include "view/engine/live_body.h"
 
 namespace glisson::view {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "view/engine/snapshot.h"
 #include "view/replay/run_folder.h"
+#include "view/state/snapshot.h"
 
 namespace glisson::view {
 

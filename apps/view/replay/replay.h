@@ -6,14 +6,14 @@
 #include <atomic>
 #include <thread>
 
-#include "view/engine/compute_times.h"
-#include "view/engine/frame_pace.h"
-#include "view/engine/inbox.h"
-#include "view/protocol/latest.h"
 #include "view/replay/frame_cache.h"
 #include "view/replay/run_folder.h"
-#include "view/server/ring.h"
-#include "view/source.h"
+#include "view/state/inbox.h"
+#include "view/state/source.h"
+#include "view/thread/compute_times.h"
+#include "view/thread/frame_pace.h"
+#include "view/thread/latest.h"
+#include "view/thread/ring.h"
 
 namespace glisson::view {
 

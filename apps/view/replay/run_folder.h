@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "view/engine/snapshot.h"
-#include "view/protocol/force_lines.h"
+#include "view/replay/force_lines.h"
+#include "view/state/snapshot.h"
 
 namespace glisson::view {
 

@@ -16,7 +16,7 @@
 #include <thread>
 #include <vector>
 
-#include "view/protocol/zip.h"
+#include "view/state/zip.h"
 
 namespace glisson::view {
 

@@ -14,9 +14,9 @@
 #include <string>
 #include <string_view>
 
-#include "view/engine/recording.h"
 #include "view/protocol/messages.h"
-#include "view/source.h"
+#include "view/state/recording.h"
+#include "view/state/source.h"
 
 namespace glisson::view {
 

@@ -8,8 +8,8 @@
 #include <thread>
 #include <vector>
 
-#include "view/engine/lead.h"
 #include "view/server/archive_sender.h"
+#include "view/server/lead.h"
 #include "view/server/strangers.h"
 #include "view/server/viewer.h"
 

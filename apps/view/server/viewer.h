@@ -10,6 +10,7 @@
 #include <memory>
 #include <string>
 
+#include "view/protocol/command_bytes.h"
 #include "view/protocol/messages.h"
 #include "view/server/access.h"
 #include "view/server/read_pace.h"

@@ -79,7 +79,7 @@ struct InnerMembrane {
 };
 
 /// Membranes drawn at random from the surface to the needle's length: a Poisson process of exponential distances, and normally
-/// distributed forces, drawn again where not above 0 (src/instruments/needle/membranes.h).
+/// distributed forces, drawn again where not above 0 (src/instruments/needle/membranes.cpp).
 struct MembraneProcess {
   double spacing = 5e-3;   ///< mean distance [m]
   double puncture = 1.0;   ///< mean force to break one [N]
@@ -160,6 +160,10 @@ struct NeedleOptions {
   }
   Fault check() const;
 };
+
+/// All membranes of a needle, those that are given and those that are drawn, by ascending depth, down to its length.
+/// The drawn ones are the same bytes on every machine.
+std::vector<InnerMembrane> membranes_of(const NeedleOptions& options);
 
 /// Stage of an insertion.
 enum class NeedleStage {

@@ -86,7 +86,7 @@ std::unique_ptr<ProbeReader> make_reader(const Simulation& simulation, const Pro
   reader->follow(simulation);
   if (!reader->tets().empty()) return reader;
   const TetMesh present = simulation.present_mesh();
-  const auto [low, high] = detail::box_of(present);
+  const auto [low, high] = box_of(present);
   throw std::invalid_argument("the point " + point_text(point.position) +
                               " m is outside of the body at rest, which spans " + point_text(low) + " to " +
                               point_text(high) + " m; its nearest point is " +

@@ -3,7 +3,7 @@
 // V is a vector of floats, one lane a tet, or a number that counts its operations (counted.h); D is its
 // Highway tag. Calls are unqualified, so that the lanes' own namespace provides Set, MulAdd and so on.
 //
-// The measure is that of material/shape_measure.h, rearranged to need no division but one. With t = tr H,
+// The measure is that of glisson/material/shape_measure.h, rearranged to need no division but one. With t = tr H,
 // m₂ the sum of its principal minors, j = J − 1 = t + m₂ + det H and ψ(j) = −3 (J^⅔ − 1 − ⅔ j + ⅑ j²),
 //
 //   1 − q = N / I₁,   N  = 2 ‖dev ε‖² + ⅓ (m₂ + det H)(j + t) − 2 det H + ψ(j)

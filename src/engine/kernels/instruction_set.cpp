@@ -1,5 +1,5 @@
 // instruction_set.cpp — a word for each family of Highway's targets.
-#include "engine/kernels/instruction_set.h"
+#include "glisson/simulation/instruction_set.h"
 
 #include <hwy/highway.h>
 

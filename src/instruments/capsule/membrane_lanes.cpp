@@ -2,8 +2,8 @@
 //
 //   gather edges of eight triangles ─▶ strain, tension, K = A G S Gᵀ in lanes ─▶ add forces, one triangle after the other
 #include "instruments/capsule/membrane_lanes.h"
-#include "engine/kernels/instruction_set.h"
 #include "engine/kernels/targets.h"
+#include "glisson/simulation/instruction_set.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "instruments/capsule/membrane_lanes.cpp"

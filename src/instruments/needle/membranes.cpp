@@ -1,6 +1,11 @@
-#include "instruments/needle/membranes.h"
-
+// membranes.cpp — the membranes across a needle's path: those that are given, and those that are drawn.
+//
+// Drawn are a distance and a force in turn, both from SplitMix64 [Steele2014]: an exponential variate by comparisons of uniform
+// ones alone [Neumann1951], and a normal one as the sum of twelve less 6. Additions, products and comparisons give the same
+// bytes on every machine; logarithms and the distributions of the standard library do not promise that.
 #include <algorithm>
+
+#include "glisson/instruments/needle.h"
 
 namespace glisson {
 namespace {

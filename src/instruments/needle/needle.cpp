@@ -7,7 +7,6 @@
 #include "base/require_fields.h"
 #include "base/two_across.h"
 #include "glisson/simulation/simulation.h"
-#include "instruments/needle/membranes.h"
 #include "instruments/needle/needle_solver.h"
 
 namespace glisson {

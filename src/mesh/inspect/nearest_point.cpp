@@ -3,16 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace glisson::detail {
-namespace {
-
-Vec3d nearest_on_edge(const Vec3d& x, const Vec3d& a, const Vec3d& b) {
-  const Vec3d along = b - a;
-  const double squared = dot(along, along);
-  return squared > 0.0 ? a + along * std::clamp(dot(x - a, along) / squared, 0.0, 1.0) : a;
-}
-
-}  // namespace
+namespace glisson {
 
 std::pair<Vec3d, Vec3d> box_of(const TetMesh& mesh) {
   Vec3d low = mesh.vertices[mesh.tets[0][0]], high = low;
@@ -26,6 +17,17 @@ std::pair<Vec3d, Vec3d> box_of(const TetMesh& mesh) {
   }
   return {low, high};
 }
+
+namespace detail {
+namespace {
+
+Vec3d nearest_on_edge(const Vec3d& x, const Vec3d& a, const Vec3d& b) {
+  const Vec3d along = b - a;
+  const double squared = dot(along, along);
+  return squared > 0.0 ? a + along * std::clamp(dot(x - a, along) / squared, 0.0, 1.0) : a;
+}
+
+}  // namespace
 
 double place_tolerance(const TetMesh& mesh) {
   const auto [low, high] = box_of(mesh);
@@ -58,4 +60,5 @@ Vec3d nearest_point(const TetMesh& mesh, const Vec3d& x) {
   return best;
 }
 
-}  // namespace glisson::detail
+}  // namespace detail
+}  // namespace glisson

@@ -1,14 +1,9 @@
-// nearest_point.h — where a body is, and how near to a bound a place still lies on it.
+// nearest_point.h — the surface near a point, and how near to a bound a place still lies on it.
 #pragma once
-
-#include <utility>
 
 #include "glisson/mesh.h"
 
 namespace glisson::detail {
-
-/// Lowest and highest corner of the box around the tets [m]. The mesh has at least one.
-std::pair<Vec3d, Vec3d> box_of(const TetMesh& mesh);
 
 /// How far from a bound a place still lies on it [m]: 1e-9 of the diagonal of box_of. Typed decimals and computed coordinates that
 /// mean the same place differ by rounding, of some 1e-16 of it; vertices that mean other places are farther apart than 1e-9.

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "base/nearest.h"
+#include "glisson/mesh.h"
 
 namespace glisson {
 

@@ -1,5 +1,5 @@
-// body_places.cpp — see body_places.h.
-#include "scene/build/body_places.h"
+// body_places.cpp — see glisson/scene/body_places.h.
+#include "glisson/scene/body_places.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@
 #include "scene/build/palpation.h"
 #include "scene/build/select.h"
 
-namespace glisson::scene {
+namespace glisson {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -66,7 +66,7 @@ struct Skin {
 
 /// A distance from which a point of the line is outside of the body, whatever the direction [m].
 double far_from(const TetMesh& mesh, const Vec3d& point) {
-  const auto [low, high] = detail::box_of(mesh);
+  const auto [low, high] = box_of(mesh);
   return 2.0 * norm(high - low) + norm(point - (low + high) * 0.5);
 }
 
@@ -79,7 +79,8 @@ std::string line_text(const Vec3d& point, const Vec3d& direction) {
 }
 
 [[noreturn]] void refuse_miss(const TetMesh& mesh, const Vec3d& point, const Vec3d& direction) {
-  throw std::invalid_argument(line_text(point, direction) + " misses the body, which spans " + extent_text(mesh) +
+  throw std::invalid_argument(line_text(point, direction) + " misses the body, which spans " +
+                              scene::extent_text(mesh) +
                               "; give another `direction`, or a `region` or `point_m` of the body");
 }
 
@@ -87,7 +88,7 @@ std::string line_text(const Vec3d& point, const Vec3d& direction) {
 std::optional<double> touch_from(const InstrumentSpec& x, const Pose& start, const Vec3d& direction,
                                  const TetMesh& mesh) {
   if (const auto* contact = std::get_if<ContactOptions>(&x.what)) {
-    return first_touch(contact->shape, start, direction, mesh);
+    return scene::first_touch(contact->shape, start, direction, mesh);
   }
   const double touch = Skin(mesh).first_crossing(start.position, direction);
   return std::isfinite(touch) ? std::optional(touch) : std::nullopt;
@@ -142,7 +143,7 @@ bool move_meets(const InstrumentSpec& x, const InstrumentForm& form, const Move&
   if (const auto* contact = std::get_if<ContactOptions>(&x.what)) {
     const bool may = may_touch(contact->shape, move.from, length, skin);
     if (!may || !exact) return may;
-    const std::optional<double> touch = first_touch(contact->shape, move.from, direction, skin.mesh);
+    const std::optional<double> touch = scene::first_touch(contact->shape, move.from, direction, skin.mesh);
     return touch && *touch <= length;
   }
   std::vector<Vec3d> points{move.from.position};
@@ -157,7 +158,7 @@ bool move_meets(const InstrumentSpec& x, const InstrumentForm& form, const Move&
 
 Vec3d body_point(const TetMesh& mesh, const BodyPoint& at) {
   if (at.point) return *at.point;
-  const int region = at.region.empty() ? 0 : region_number(mesh, at.region);
+  const int region = at.region.empty() ? 0 : scene::region_number(mesh, at.region);
   Vec3d sum{};
   double weight = 0.0;
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
@@ -200,7 +201,7 @@ Vec3d aimed_tip(const InstrumentSpec& x, const Pose& pose, const TetMesh& mesh) 
 
 std::optional<PathMeeting> meets_body(const InstrumentSpec& x, const TetMesh& mesh, double until) {
   if (std::holds_alternative<OwnInstrument>(x.what)) return {};
-  const InstrumentForm form = make_instrument(x, mesh)->form();
+  const InstrumentForm form = scene::make_instrument(x, mesh)->form();
   const std::shared_ptr<ToolDriver> driver = make_driver(x, mesh);
   until = std::min(until, driver->end().value_or(kInfinite));
   if (driver->yields() || !std::isfinite(until)) return {};
@@ -222,4 +223,4 @@ std::optional<PathMeeting> meets_body(const InstrumentSpec& x, const TetMesh& me
   return beside;
 }
 
-}  // namespace glisson::scene
+}  // namespace glisson

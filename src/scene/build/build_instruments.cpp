@@ -9,7 +9,7 @@
 #include "base/nearest.h"
 #include "glisson/instruments/driven_set.h"
 #include "glisson/mesh.h"
-#include "scene/build/body_places.h"
+#include "glisson/scene/body_places.h"
 #include "scene/build/palpation.h"
 #include "scene/build/select.h"
 
@@ -133,7 +133,7 @@ std::shared_ptr<ToolDriver> make_driver(const InstrumentSpec& x) {
 
 Pose start_pose(const InstrumentSpec& x, const TetMesh& mesh) {
   Pose pose = start_pose(x);
-  if (x.aim) pose.position = scene::aimed_tip(x, pose, mesh);
+  if (x.aim) pose.position = aimed_tip(x, pose, mesh);
   return pose;
 }
 

@@ -8,9 +8,10 @@
 #include <stdexcept>
 #include <utility>
 
+#include "glisson/scene/body_places.h"
+#include "glisson/scene/near_bounds.h"
 #include "mesh/inspect/nearest_point.h"
 #include "mesh/inspect/vertex_set.h"
-#include "scene/build/body_places.h"
 #include "scene/parse/section.h"
 
 namespace glisson::scene {
@@ -35,7 +36,7 @@ Beyond bounds_of(const TetMesh&, const Selection::Sphere& ball) {
 
 Beyond bounds_of(const TetMesh& mesh, const Selection::Side& side) {
   const auto axis = static_cast<std::size_t>(side.axis);
-  const auto [low, high] = detail::box_of(mesh);
+  const auto [low, high] = box_of(mesh);
   const double from = side.upper ? high[axis] : low[axis], other = side.upper ? low[axis] : high[axis];
   const double depth = side.upper ? -side.depth : side.depth;
   const double bound = side.share > 0.0 ? std::lerp(from, other, side.share) : from + depth;
@@ -180,17 +181,6 @@ std::vector<std::uint32_t> select_vertices(const TetMesh& mesh, const std::strin
   return std::visit(pick, selection.where);
 }
 
-NearBounds near_bounds(const TetMesh& mesh, const Selection& selection) {
-  const auto beyond = std::visit([&](const auto& where) { return bounds_of(mesh, where); }, selection.where);
-  const std::vector<std::uint32_t> among = vertices_among(mesh, selection);
-  return count_near(mesh, beyond, among.size(), [&](std::size_t i) { return mesh.vertices[among[i]]; });
-}
-
-NearBounds near_bounds(const TetMesh& mesh, const RegionSpec& region) {
-  const auto beyond = std::visit([&](const auto& where) { return bounds_of(mesh, where); }, region.where);
-  return count_near(mesh, beyond, mesh.tets.size(), [&](std::size_t t) { return centroid(mesh, t); });
-}
-
 std::vector<std::size_t> tets_within(const TetMesh& mesh, const RegionSpec& region) {
   const auto beyond = std::visit([&](const auto& where) { return bounds_of(mesh, where); }, region.where);
   const double tolerance = detail::place_tolerance(mesh);
@@ -202,7 +192,7 @@ std::vector<std::size_t> tets_within(const TetMesh& mesh, const RegionSpec& regi
 }
 
 std::string extent_text(const TetMesh& mesh) {
-  const auto [low, high] = detail::box_of(mesh);
+  const auto [low, high] = box_of(mesh);
   std::string text;
   for (std::size_t i = 0; i < 3; ++i) {
     text += (i ? ", " : "") + std::string(1, "xyz"[i]) + " " + show(low[i]) + " to " + show(high[i]) + " m";
@@ -225,3 +215,20 @@ int region_number(const TetMesh& mesh, const std::string& name) {
 }
 
 }  // namespace glisson::scene
+
+namespace glisson {
+
+NearBounds near_bounds(const TetMesh& mesh, const Selection& selection) {
+  using namespace scene;
+  const auto beyond = std::visit([&](const auto& where) { return bounds_of(mesh, where); }, selection.where);
+  const std::vector<std::uint32_t> among = vertices_among(mesh, selection);
+  return count_near(mesh, beyond, among.size(), [&](std::size_t i) { return mesh.vertices[among[i]]; });
+}
+
+NearBounds near_bounds(const TetMesh& mesh, const RegionSpec& region) {
+  using namespace scene;
+  const auto beyond = std::visit([&](const auto& where) { return bounds_of(mesh, where); }, region.where);
+  return count_near(mesh, beyond, mesh.tets.size(), [&](std::size_t t) { return centroid(mesh, t); });
+}
+
+}  // namespace glisson

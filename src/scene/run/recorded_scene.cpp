@@ -1,5 +1,5 @@
-// recorded_scene.cpp — see recorded_scene.h.
-#include "scene/run/recorded_scene.h"
+// recorded_scene.cpp — see glisson/scene/recorded_scene.h.
+#include "glisson/scene/recorded_scene.h"
 
 #include <algorithm>
 #include <sstream>
@@ -155,9 +155,13 @@ std::string comment(const std::string& head) {
 }
 
 }  // namespace
+}  // namespace glisson::scene
+
+namespace glisson {
 
 std::string recorded_scene(std::string_view text, const std::string& name, const std::filesystem::path& base,
                            std::span<const Override> overrides, const Variant& variant, const RecordedPaths& ways) {
+  using namespace scene;
   Problems problems(name);
   Expanded expanded = expand(parse_document(text, name), overrides, base, problems);
   problems.throw_if_any();
@@ -178,4 +182,4 @@ std::string recorded_scene(std::string_view text, const std::string& name, const
   return out.str();
 }
 
-}  // namespace glisson::scene
+}  // namespace glisson

@@ -4,7 +4,8 @@ import { figure } from "../page/figure.ts";
 import { axisLabel, nameOfLabel, unitOfLabel } from "../format/units.ts";
 import type { FitAxis, FitCurve, FitData } from "../report_data.ts";
 import { type Panel, along, panelTitle, panelsOf } from "./panels.ts";
-import { type PlotMark, plot } from "./plot/plot.ts";
+import type { PlotMark } from "./plot/marks.ts";
+import { plot } from "./plot/plot.ts";
 import { type Scale, makeScale, scaleOf } from "./plot/scale.ts";
 import { use } from "./verdicts.ts";
 

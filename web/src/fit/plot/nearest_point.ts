@@ -1,5 +1,5 @@
 // nearest_point.ts — the point of a small chart that cursor or arrow keys mean.
-import type { PointsMark } from "./plot.ts";
+import type { PointsMark } from "./marks.ts";
 import { type Scale, place } from "./scale.ts";
 
 export interface FoundPoint {

@@ -11,6 +11,7 @@ import { nameOfLabel, unitOfLabel } from "../../format/units.ts";
 import { h, svg } from "../../page/dom.ts";
 import { svgButton } from "../../page/save_svg.ts";
 import { withSubscripts } from "../names.ts";
+import type { PlotMark, PointsMark } from "./marks.ts";
 import { nearestPoint, orderAlongX } from "./nearest_point.ts";
 import { type Scale, place, tickValues } from "./scale.ts";
 import { SIZE, bandPath, dotPath, linePath } from "./trace.ts";
@@ -20,32 +21,6 @@ export interface PlotAxis {
   scale: Scale;
   ticks?: number; // about how many
 }
-
-/** Points with a name are read out at the cursor. */
-export interface PointsMark {
-  kind: "line" | "dots";
-  className: string;
-  x: ArrayLike<number>;
-  y: ArrayLike<number>;
-  name?: string;
-}
-
-export interface BandMark {
-  kind: "band";
-  className: string;
-  x: readonly [number | null, number | null];
-  y: readonly [number | null, number | null];
-}
-
-export interface RuleMark {
-  kind: "rule";
-  className: string;
-  x?: number;
-  y?: number;
-  label?: string; // of a horizontal one, at its right end
-}
-
-export type PlotMark = PointsMark | BandMark | RuleMark;
 
 export interface PlotSpec {
   title: string; // for those who do not see it
