@@ -37,6 +37,12 @@ std::string CheckClock::left_out() const {
   return left_out_.empty() ? "" : fmt::format("Left out for want of time: {}.\n", fmt::join(left_out_, "; "));
 }
 
+std::string CheckClock::not_a_pass() {
+  return "This is not a pass (exit status 4). `--variant NAME` checks one variant alone, a coarser mesh takes less "
+         "time, "
+         "and `glisson run`\nbuilds the rest and says whether it can be run.\n";
+}
+
 int CheckClock::run(const std::function<int()>& work) {
   std::packaged_task<int()> task(work);
   std::future<int> result = task.get_future();
@@ -48,9 +54,9 @@ int CheckClock::run(const std::function<int()>& work) {
   }
   const std::string others = left_out();
   const std::lock_guard lock(mutex_);
-  say("\nThe check ends after {:.0f} s, within {}. Not known: whether {} can be run, and what that would cost.\n{}",
-      kMost, part_, fmt::join(open_, ", "), others);
-  std::_Exit(end_output(kDone));
+  say("\nThe check ends after {:.0f} s, within {}. Not known: whether {} can be run, and what that would cost.\n{}{}",
+      kMost, part_, fmt::join(open_, ", "), others, not_a_pass());
+  std::_Exit(end_output(kUnfinished));
 }
 
 }  // namespace glisson::app

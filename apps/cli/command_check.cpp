@@ -32,9 +32,9 @@ namespace {
 constexpr const char* kCheckFooter =
     "Reads the scene, builds every variant, steps it for a tenth of a second and prints mesh, vertex\n"
     "sets, tissue, stable step, and the steps and the time a run will take. Writes nothing. Exit status 2 if the\n"
-    "scene cannot be run, 3 if its numbers end a run within that time. It takes ten seconds at most: what there is no "
-    "time\n"
-    "for is left out, and said.\n"
+    "scene cannot be run, 3 if its numbers end a run within that time, 4 if time ran out before every variant was "
+    "looked\n"
+    "at. It takes ten seconds at most: what there is no time for is left out, and said.\n"
     "\n"
     "Examples:\n"
     "  glisson check scenes/paper/figure3b.toml\n"
@@ -351,11 +351,14 @@ int check_all(const Scene& scene, const CheckOptions& options, CheckClock& clock
       whole.knows_cost ? fmt::format("about {}{} on {} thread{}", duration_text(wall), others.empty() ? "" : " or more",
                                      options.threads, options.threads == 1 ? "" : "s")
                        : "of unknown cost";
-  const char* can = whole.ends                           ? "Its numbers end a run early, see `trouble`"
-                    : looked_at == scene.variants.size() ? "The scene can be run"
-                                                         : "What was looked at can be run";
-  say("\n{} variant{}, {}. {}.\n{}", scene.variants.size(), scene.variants.size() == 1 ? "" : "s", time, can, others);
-  return whole.ends ? kNumericalEnd : kDone;
+  const bool all = looked_at == scene.variants.size();
+  const char* can = whole.ends ? "Its numbers end a run early, see `trouble`"
+                    : all      ? "The scene can be run"
+                               : "What was looked at can be run";
+  say("\n{} variant{}, {}. {}.\n{}{}", scene.variants.size(), scene.variants.size() == 1 ? "" : "s", time, can, others,
+      all ? std::string() : CheckClock::not_a_pass());
+  if (whole.ends) return kNumericalEnd;
+  return all ? kDone : kUnfinished;
 }
 
 int check(const CheckOptions& options) {

@@ -1,16 +1,24 @@
 // command_compare.cpp — glisson compare: one experiment, many models; error against time.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "cli/commands.h"
 #include "cli/comparison_report.h"
+#include "cli/progress.h"
 #include "compare/problem_json.h"
 #include "program/exit_code.h"
 #include "program/interrupt.h"
 #include "program/json_option.h"
 #include "program/mesh_cache.h"
+#include "program/option_check.h"
 #include "program/scene_options.h"
 #include "program/standard_streams.h"
 #include "report/json_text.h"
@@ -32,6 +40,8 @@ constexpr const char* kCompareFooter =
     "Of a scene with variants each is compared, and a last table has the errors of all. The reference of viscous "
     "tissue "
     "is in motion.\n"
+    "Explicit steps that would take more than an hour together are refused before anything runs; --allow-hours lifts "
+    "that.\n"
     "Writes DIR/report.html and DIR/compare.json. Ctrl-C keeps the models that are done.\n"
     "\n"
     "Examples:\n"
@@ -42,8 +52,60 @@ constexpr const char* kCompareFooter =
 struct CompareOptions {
   SceneOptions scene;
   std::string out, json, problem;
+  double allow_hours = 1.0;
   bool list = false, quiet = false;
 };
+
+double total_seconds(const std::vector<ExpectedTime>& times) {
+  double sum = 0.0;
+  for (const ExpectedTime& one : times) sum += one.wall_s;
+  return sum;
+}
+
+std::string model_text(const ExpectedTime& one) {
+  return fmt::format("{} {:.2g} steps, {}", one.model, one.steps, duration_text(one.wall_s));
+}
+
+/// `--set 'compare.models=[…]'` without the models that take longest, as many of them as it needs; empty: none would do.
+std::string quick_models(const Scene& scene, std::vector<ExpectedTime> times, double most_s) {
+  std::ranges::sort(times, std::ranges::less{}, &ExpectedTime::wall_s);
+  std::set<std::string, std::less<>> left_out;
+  while (total_seconds(times) > most_s) {
+    left_out.insert(times.back().model);
+    times.pop_back();
+  }
+  if (left_out.contains("reference")) return {};
+  std::vector<std::string> kept;
+  for (const models::Rival* rival : chosen_models(scene)) {
+    if (!left_out.contains(rival->name)) kept.push_back(fmt::format("\"{}\"", rival->name));
+  }
+  return kept.empty() ? std::string() : fmt::format("--set 'compare.models=[{}]'", fmt::join(kept, ","));
+}
+
+/// Says what the models' explicit steps will take. @throws std::invalid_argument where that is more than is allowed
+void require_time(const Scene& scene, std::vector<ExpectedTime> times, const CompareOptions& options) {
+  constexpr double kHour = 3600.0;
+  if (times.empty()) return;
+  std::ranges::sort(times, std::ranges::greater{}, &ExpectedTime::wall_s);
+  const double total = total_seconds(times);
+  if (!options.quiet) {
+    tell("  explicit steps will take about {}, more where tissue stiffens; the longest: {}\n",
+         duration_text(std::max(total, 0.1)), model_text(times.front()));
+  }
+  if (total <= options.allow_hours * kHour) return;
+  std::vector<std::string> list;
+  for (const ExpectedTime& one : times) list.push_back(model_text(one));
+  const std::string quick = quick_models(scene, times, options.allow_hours * kHour);
+  throw std::invalid_argument(
+      fmt::format("{}: explicit steps would take about {} ({}), more than --allow-hours {:.6g}: the stable step of "
+                  "stiff tissue and "
+                  "small tets is short. {}lower tissue.youngs_modulus_Pa, coarsen the mesh or take a smaller "
+                  "compare.meshes; or run "
+                  "it all with --allow-hours {:.0f}",
+                  scene.file.string(), duration_text(total), fmt::join(list, "; "), options.allow_hours,
+                  quick.empty() ? "Shorten the motion, " : "Leave out the longest, " + quick + "; shorten the motion, ",
+                  std::ceil(1.5 * total / kHour)));
+}
 
 int list_models() {
   for (const models::Rival& rival : models::rivals()) {
@@ -61,10 +123,11 @@ int run_comparison(const CompareOptions& options) {
   const fs::path folder =
       options.out.empty() ? fs::path("out") / (scene.file.stem().string() + "_compare") : fs::path(options.out);
   OutputFolder output(folder, tell_warning);
-  output.prepare();
-  write_whole(folder / "scene.toml", scene.source);
   catch_interrupts();
   MeshCache meshes(options.quiet);
+  require_time(scene, expected_times(scene, meshes.loader(), stop_flag()), options);
+  output.prepare();
+  write_whole(folder / "scene.toml", scene.source);
   const auto progress = [&](const std::string& what) {
     if (!options.quiet) tell("  {}\n", what);
   };
@@ -97,6 +160,12 @@ void add_compare(CLI::App& program, Action& action) {
                    "write the first variant's meshes, moduli, supports, paths and reference to this JSON file")
       ->type_name("FILE")
       ->check(file_place);
+  command
+      ->add_option("--allow-hours", options->allow_hours,
+                   "refuse explicit steps that would take longer than this together")
+      ->type_name("H")
+      ->check(within(above(0), Numbers::all))
+      ->capture_default_str();
   command->add_flag("--list", options->list, "print the models and what each cannot do");
   command->add_flag("--quiet", options->quiet, "print the table and the report's path alone");
   command->footer(kCompareFooter);

@@ -15,10 +15,12 @@ using nlohmann::json;
 constexpr const char* kPlotFooter =
     "Writes each chart of OUT/report.html to OUT/plots/TITLE.svg (.png, .pdf), with the lines, names and marks of the "
     "report.\n"
-    "OUT is what run, compare, converge or reproduce wrote. The same in Python: glisson.plot.run(OUT).\n"
+    "OUT is what run, compare, converge or reproduce wrote, or fit: then the measured and simulated curves of\n"
+    "OUT/fit.json, and their residuals. The same in Python: glisson.plot.run(OUT).\n"
     "\n"
     "Examples:\n"
     "  glisson plot out/figure2\n"
+    "  glisson plot out/my_fit --svg\n"
     "  glisson plot out/figure2 --pdf --png --size-mm 180x90 --chart depth";
 constexpr const char* kPictureFooter =
     "Draws a frame of OUT in parallel projection, without a display or a graphics card: the body coloured by a field, "

@@ -43,7 +43,7 @@ constexpr const char* kFooter =
     "  glisson bench --quick                    what a step costs on this machine\n"
     "\n"
     "See also `glisson COMMAND --help`. Exit status: 0 done, 1 failed, 2 a scene, mesh or option that cannot be\n"
-    "used, 3 a run ended by a numerical failure, 130 interrupted.";
+    "used, 3 a run ended by a numerical failure, 4 a check that ran out of time, 130 interrupted.";
 
 int complain(std::string_view what, int code) {
   std::fflush(stdout);

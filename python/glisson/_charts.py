@@ -9,12 +9,13 @@ import json
 import os
 import re
 import unicodedata
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ._fit_charts import fit_charts, read_fit
 from ._frames import RunError
 from ._optional import need
 
@@ -76,7 +77,8 @@ def from_zero(ax: Any) -> None:
     for axis, share, air in (("x", 0.15, 0.0), ("y", 0.5, 0.06)):
         values = [np.asarray(line.get_data()[axis == "y"], dtype=float) for line in ax.lines]
         known = np.concatenate([v[np.isfinite(v)] for v in values]) if values else np.zeros(0)
-        if known.size == 0 or getattr(ax, f"get_{axis}scale")() == "log":
+        given = not getattr(ax, f"get_autoscale{axis}_on")()
+        if known.size == 0 or given or getattr(ax, f"get_{axis}scale")() == "log":
             continue
         low, high = float(known.min()), float(known.max())
         reach = share * (high - low)
@@ -176,7 +178,9 @@ def plot_run(
 ) -> list[Path]:
     """Writes the charts of a report, one file each: NAME.svg, NAME.png, NAME.pdf.
 
-    :param out: the folder of a run, or of `compare`, `converge`, `reproduce`; or the report.html itself
+    Of a fit, by fit.json: the measured and simulated curves of each group, and their residuals over the band of the noise.
+
+    :param out: the folder of a run or a fit, or of `compare`, `converge`, `reproduce`; or the report.html or fit.json itself
     :param folder: where to write; none: `plots` in `out`
     :param formats: svg, png, pdf
     :param chart: only charts whose title contains this
@@ -190,27 +194,63 @@ def plot_run(
         raise RunError(f"format {unknown[0] if unknown else 'none'!r}; there are: {', '.join(FORMATS)}")
     if not all(10 <= float(x) <= 1000 for x in size_mm):
         raise RunError(f"size is {size_mm[0]:g}x{size_mm[1]:g} mm; each may be 10 to 1000 mm")
-    file = Path(out)
-    file = file / "report.html" if file.is_dir() else file
+    file = _file_of(Path(out))
     where = Path(folder) if folder is not None else file.parent / "plots"
-    report = read_report(file)
-    charts = [(scene, spec) for scene in report["scenes"] for spec in charts_of(scene)]
-    chosen = [c for c in charts if chart is None or chart.casefold() in c[1]["title"].casefold()]
+    charts = _all_charts(file, variants, size_mm)
+    chosen = [c for c in charts if chart is None or chart.casefold() in c[1].casefold()]
     if not chosen:
-        titles = ", ".join(repr(spec["title"]) for _, spec in charts) or "none"
+        titles = ", ".join(repr(title) for _, title, _ in charts) or "none"
         raise RunError(f"there is no chart {chart!r} in {file}; there are: {titles}" if chart else f"{file} has no charts")
-    _check_variants(report, variants)
     where.mkdir(parents=True, exist_ok=True)
     written: list[Path] = []
     used: set[str] = set()
-    for scene, spec in chosen:
-        name = _file_name(spec["title"] if len(report["scenes"]) == 1 else f"{scene['name']} {spec['title']}", used)
-        figure = draw_chart(scene, spec, variants, size_mm)
+    for name, _, make in chosen:
+        name = _file_name(name, used)
+        figure = make()
         for form in dict.fromkeys(formats):
             written.append(where / f"{name}.{form}")
             with style():
                 figure.savefig(written[-1])
     return written
+
+
+def _file_of(out: Path) -> Path:
+    """The fit.json of a fit's folder, the report.html of any other."""
+    if not out.is_dir():
+        return out
+    return out / "fit.json" if (out / "fit.json").exists() else out / "report.html"
+
+
+def _all_charts(
+    file: Path, variants: Sequence[str] | None, size_mm: tuple[float, float]
+) -> list[tuple[str, str, Callable[[], Any]]]:
+    """What each chart is called as a file, its title, and what draws it."""
+    report = {"scenes": [], "fits": [read_fit(file)]} if file.suffix == ".json" else read_report(file)
+    _check_variants(report, variants)
+    charts: list[tuple[str, str, Callable[[], Any]]] = []
+    for scene in report["scenes"]:
+        for spec in charts_of(scene):
+            name = spec["title"] if len(report["scenes"]) == 1 else f"{scene['name']} {spec['title']}"
+            charts.append((name, spec["title"], lambda scene=scene, spec=spec: draw_chart(scene, spec, variants, size_mm)))
+    several = len(report["scenes"]) + len(report["fits"]) > 1
+    for fit in report["fits"]:
+        for title, draw in fit_charts(fit):
+            charts.append((f"{fit.get('name', 'fit')} {title}" if several else title, title, lambda draw=draw: _figure_of(draw, size_mm)))
+    return charts
+
+
+def _figure_of(draw: Callable[[Any], Iterable[dict[str, Any]] | None], size_mm: tuple[float, float]) -> Any:
+    """A figure of its own, in the looks of all, into whose axes `draw` draws; the marks that it returns lie on the lines."""
+    figures = need("matplotlib.figure", "matplotlib", "plot")
+    with style():
+        figure = figures.Figure(figsize=(size_mm[0] / 25.4, size_mm[1] / 25.4))
+        need("matplotlib.backends.backend_agg", "matplotlib", "plot").FigureCanvasAgg(figure)
+        ax = figure.add_subplot()
+        marks = draw(ax)
+        from_zero(ax)
+        name_lines(ax)
+        _draw_marks(ax, marks or [])
+    return figure
 
 
 def read_report(file: Path) -> dict[str, Any]:
@@ -227,6 +267,7 @@ def read_report(file: Path) -> dict[str, Any]:
     if not isinstance(report, dict) or report.get("format") != 1:
         raise RunError(f"{file}: not a report of Glisson in format 1")
     report.setdefault("scenes", [])
+    report.setdefault("fits", [])
     return report
 
 
@@ -294,29 +335,26 @@ def draw_chart(
     scene: dict[str, Any], spec: dict[str, Any], variants: Sequence[str] | None = None, size_mm: tuple[float, float] = (88.0, 66.0)
 ) -> Any:
     """A chart as a figure of its own."""
-    figures = need("matplotlib.figure", "matplotlib", "plot")
-    with style():
-        figure = figures.Figure(figsize=(size_mm[0] / 25.4, size_mm[1] / 25.4))
-        need("matplotlib.backends.backend_agg", "matplotlib", "plot").FigureCanvasAgg(figure)
-        ax = figure.add_subplot()
-        marks = _draw_variants(ax, scene, spec, variants)
-        for curve in spec.get("points") or []:
-            ax.plot(curve["x"], curve["y"], "o", markersize=2.8, markerfacecolor="none", color="#1a1f26", label=curve["label"] or "measured")
-        for curve in spec.get("fits") or []:
-            ax.plot(curve["x"], curve["y"], color="#1a1f26", linestyle=(0, (4, 4)), linewidth=0.9, label=curve["label"])
-        names = list(dict.fromkeys(c["label"] for other in scene.get("charts", []) for c in other.get("lines") or []))
-        for curve in spec.get("lines") or []:
-            ax.plot(curve["x"], curve["y"], label=curve["label"], **line_look(names.index(curve["label"])))
-        if spec.get("log_x"):
-            ax.set_xscale("log")
-        if spec.get("log_y"):
-            ax.set_yscale("log")
-        ax.set_xlabel(_capital(spec["x"]["label"]))
-        ax.set_ylabel(_capital(spec["y"]["label"]))
-        from_zero(ax)
-        name_lines(ax)
-        _draw_marks(ax, marks)
-    return figure
+    return _figure_of(lambda ax: _draw_spec(ax, scene, spec, variants), size_mm)
+
+
+def _draw_spec(ax: Any, scene: dict[str, Any], spec: dict[str, Any], variants: Sequence[str] | None) -> list[dict[str, Any]]:
+    """The lines and names of a chart; returns the events that belong on them."""
+    marks = _draw_variants(ax, scene, spec, variants)
+    for curve in spec.get("points") or []:
+        ax.plot(curve["x"], curve["y"], "o", markersize=2.8, markerfacecolor="none", color="#1a1f26", label=curve["label"] or "measured")
+    for curve in spec.get("fits") or []:
+        ax.plot(curve["x"], curve["y"], color="#1a1f26", linestyle=(0, (4, 4)), linewidth=0.9, label=curve["label"])
+    names = list(dict.fromkeys(c["label"] for other in scene.get("charts", []) for c in other.get("lines") or []))
+    for curve in spec.get("lines") or []:
+        ax.plot(curve["x"], curve["y"], label=curve["label"], **line_look(names.index(curve["label"])))
+    if spec.get("log_x"):
+        ax.set_xscale("log")
+    if spec.get("log_y"):
+        ax.set_yscale("log")
+    ax.set_xlabel(_capital(spec["x"]["label"]))
+    ax.set_ylabel(_capital(spec["y"]["label"]))
+    return marks
 
 
 def _draw_variants(ax: Any, scene: dict[str, Any], spec: dict[str, Any], variants: Sequence[str] | None) -> list[dict[str, Any]]:

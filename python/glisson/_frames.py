@@ -20,7 +20,7 @@ class RunError(ValueError):
 
 @dataclass
 class Frame:
-    """One instant of a body, and the tools with their surfaces."""
+    """One instant of a body, without tets that were removed, and the tools with their surfaces."""
 
     time: float
     rest: Any  # (n, 3) [m]
@@ -56,6 +56,10 @@ def read_frame(out: Path, variant: str, number: int) -> Frame:
             groups[group][name] = read[name]
     del head
     tets = read["connectivity"].reshape(-1, 4).astype(np.int64)
+    cells = groups["CellData"]
+    if "removed" in cells:
+        there = cells.pop("removed") == 0
+        tets, cells = tets[there], {name: values[there] for name, values in cells.items()}
     tools = {}
     for series in sorted(folder.glob("tool_*.pvd")):
         surfaces = _collection(series)
@@ -63,7 +67,7 @@ def read_frame(out: Path, variant: str, number: int) -> Frame:
             _, parts = _arrays(surfaces[number][1])
             points = _shaped(*parts[("Points", "Points")])
             tools[series.stem.removeprefix("tool_")] = (points, _shaped(*parts[("Polys", "connectivity")]).reshape(-1, 3))
-    return Frame(time, read["Points"], tets, groups["PointData"], groups["CellData"], tools)
+    return Frame(time, read["Points"], tets, groups["PointData"], cells, tools)
 
 
 def _collection(file: Path) -> list[tuple[float, Path]]:

@@ -84,7 +84,7 @@ def picture(
     :returns: the matplotlib figure
     :raises ValueError: for what cannot be drawn, with the way out
 
-    Tets that were removed stay in the frames, and in the picture.
+    Tets that were removed stay in the frames, and are left out of the picture.
     """
     width, height = _checked_size(size)
     folder = Path(out)

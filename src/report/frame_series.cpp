@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <exception>
 #include <new>
+#include <optional>
 #include <span>
 
 #include "glisson/io.h"
@@ -50,6 +51,18 @@ Field strain_field(const TetMesh& mesh, std::span<const Vec3d> u) {
     strain.values.insert(strain.values.end(), {e.xx, e.xy, e.zx, e.xy, e.yy, e.yz, e.zx, e.yz, e.zz});
   }
   return strain;
+}
+
+/// 1 at tets that were removed, 0 at others; nothing where all are there.
+std::optional<Field> removed_field(const Simulation& simulation) {
+  Field field{.name = "removed", .components = 1, .values = {}};
+  bool any = false;
+  for (std::uint32_t t = 0; t < simulation.mesh().tets.size(); ++t) {
+    const bool removed = simulation.is_removed(t);
+    any = any || removed;
+    field.values.push_back(removed ? 1.0 : 0.0);
+  }
+  return any ? std::optional(std::move(field)) : std::nullopt;
 }
 
 /// The longest edge of the body's box at rest [m].
@@ -101,6 +114,7 @@ void FrameSeries::add(const Simulation& simulation, const TetFields& fields) {
   frame.at_tets.push_back({.name = "q", .components = 1, .values = fields.q});
   frame.at_tets.push_back({.name = "s", .components = 1, .values = fields.s});
   frame.at_tets.push_back({.name = "jacobian", .components = 1, .values = fields.jacobian});
+  if (std::optional<Field> removed = removed_field(simulation)) frame.at_tets.push_back(std::move(*removed));
   if (linear_) frame.at_tets.push_back({.name = "linear", .components = 1, .values = fields.linear});
   for (Field& field : frame.at_tets) field.single = true;  // they follow from positions, which are kept in double
   finish();

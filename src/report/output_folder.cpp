@@ -46,8 +46,13 @@ std::vector<fs::path> former_run(const fs::path& folder) {
   return {found.rbegin(), found.rend()};
 }
 
-/// The process that holds a lock on a folder, as " by process 123"; empty where the system does not tell.
-std::string holder_of(const struct stat& folder) {
+struct Holder {
+  long process = 0;     ///< 0: the system does not tell
+  bool inside = false;  ///< it writes to a folder inside: its lock is shared
+};
+
+/// The process that holds a lock on a folder.
+Holder holder_of(const struct stat& folder) {
   std::ifstream locks("/proc/locks");  // "1: FLOCK ADVISORY WRITE 123 08:01:456 0 EOF"
   const std::string inode = ":" + std::to_string(folder.st_ino);
   for (std::string line; std::getline(locks, line);) {
@@ -55,9 +60,29 @@ std::string holder_of(const struct stat& folder) {
     std::string number, kind, how, access, place;
     long process = 0;
     if (!(words >> number >> kind >> how >> access >> process >> place)) continue;  // "->": one that waits
-    if (kind == "FLOCK" && place.ends_with(inode) && process > 0) return " by process " + std::to_string(process);
+    if (kind == "FLOCK" && place.ends_with(inode) && process > 0 && process != getpid())
+      return {process, access == "READ"};
   }
   return {};
+}
+
+/// That another run writes to a folder, or to one inside it, and the way out.
+std::string other_run(const fs::path& folder, int descriptor) {
+  struct stat locked {};
+  const Holder holder = fstat(descriptor, &locked) == 0 ? holder_of(locked) : Holder{};
+  return folder.string() + ": another run is being written " + (holder.inside ? "inside it" : "there") +
+         (holder.process > 0 ? " by process " + std::to_string(holder.process) : std::string()) +
+         ", and two would mix their files; wait for its end, end it, or choose another folder with --out DIR";
+}
+
+/// Whether a run could write to a folder: it has the mark, or holds nothing but the way to a folder inside it.
+bool could_be_output(const fs::path& folder, const fs::path& inside) {
+  std::error_code error;
+  if (fs::exists(folder / kMark, error)) return true;
+  for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+    if (at->path().filename() != inside.filename()) return false;
+  }
+  return !error;
 }
 
 }  // namespace
@@ -74,14 +99,21 @@ OutputFolder::OutputFolder(fs::path folder, const std::function<void(const std::
                       ": is removed and made again by another process; choose another folder with --out DIR");
   } catch (...) {
     remove_made();
-    if (descriptor_ >= 0) close(descriptor_);
+    unlock();
     throw;
   }
 }
 
 OutputFolder::~OutputFolder() {
   remove_made();
+  unlock();
+}
+
+void OutputFolder::unlock() {
   if (descriptor_ >= 0) close(descriptor_);
+  for (const int above : above_) close(above);
+  descriptor_ = -1;
+  above_.clear();
 }
 
 void OutputFolder::make() {
@@ -106,18 +138,15 @@ void OutputFolder::remove_made() {
 
 /// @return false where the folder was another one by the time it was locked
 bool OutputFolder::lock(const std::function<void(const std::string&)>& warn) {
-  if (descriptor_ >= 0) close(descriptor_);
+  unlock();
   descriptor_ = open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor_ < 0 && errno == ENOENT) return false;
   struct stat locked {};
   const bool taken = descriptor_ >= 0 && flock(descriptor_, LOCK_EX | LOCK_NB) == 0;
   const int reason = errno;
   if (!taken && descriptor_ >= 0 && reason == EWOULDBLOCK) {
-    const std::string holder = fstat(descriptor_, &locked) == 0 ? holder_of(locked) : std::string();
     made_.clear();
-    throw std::invalid_argument(folder_.string() + ": another run is being written there" + holder +
-                                ", and two would mix their files; wait for its end, end it, or choose another folder "
-                                "with --out DIR");
+    throw std::invalid_argument(other_run(folder_, descriptor_));
   }
   if (!taken) {
     if (warn) {
@@ -127,8 +156,24 @@ bool OutputFolder::lock(const std::function<void(const std::string&)>& warn) {
     return true;
   }
   struct stat there {};
-  return fstat(descriptor_, &locked) == 0 && stat(folder_.c_str(), &there) == 0 && locked.st_ino == there.st_ino &&
-         locked.st_dev == there.st_dev;
+  const bool same = fstat(descriptor_, &locked) == 0 && stat(folder_.c_str(), &there) == 0 &&
+                    locked.st_ino == there.st_ino && locked.st_dev == there.st_dev;
+  if (same) lock_above();
+  return same;
+}
+
+/// Shares the folders around it with other runs that are inside them. @throws std::invalid_argument where one of them is another run's
+void OutputFolder::lock_above() {
+  std::error_code error;
+  fs::path inside = fs::canonical(folder_, error);
+  for (; !error && inside.has_relative_path(); inside = inside.parent_path()) {
+    const fs::path at = inside.parent_path();
+    const int above = could_be_output(at, inside) ? open(at.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC) : -1;
+    if (above < 0) continue;
+    above_.push_back(above);
+    if (flock(above, LOCK_SH | LOCK_NB) == 0 || errno != EWOULDBLOCK) continue;
+    throw std::invalid_argument(folder_.string() + " is inside the folder of another run. " + other_run(at, above));
+  }
 }
 
 void OutputFolder::prepare() {

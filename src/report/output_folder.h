@@ -6,6 +6,12 @@
 //
 // While a run writes, it holds an advisory lock (flock) on the folder itself, which the system releases when the process ends, however
 // it ends. A second run is refused; nothing has to be cleaned up after a crash, and threads and children of the run are not concerned.
+//
+//   out            exclusive lock of a run into it; shared lock of a run into out/a or out/a/b, so that neither goes beside the other
+//   out/a          exclusive lock of a run into it
+//
+// Only folders above that a run could write to are locked: those with `.glisson`, and those that hold nothing but the way down. So runs
+// into out/a and out/b do not meet, nor does one meet a lock that another program has on a working folder or a home.
 #pragma once
 
 #include <filesystem>
@@ -15,12 +21,12 @@
 
 namespace glisson {
 
-/// A folder that no other process writes results to while this lives.
+/// A folder that no other process writes results to while this lives, nor to one inside it or around it.
 class OutputFolder {
  public:
   /// Makes the folder, where there is none, and locks it. What has been made is removed again at the end where prepare() was not called.
   /// @param warn  is told where the file system has no locks: nothing then keeps a second run away
-  /// @throws std::invalid_argument naming the process that writes there @throws OutputError with the reason of the system
+  /// @throws std::invalid_argument naming the folder and the process that writes there, inside it or around it @throws OutputError with the reason of the system
   explicit OutputFolder(std::filesystem::path folder, const std::function<void(const std::string&)>& warn = {});
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
@@ -34,10 +40,13 @@ class OutputFolder {
   void make();
   void remove_made();
   bool lock(const std::function<void(const std::string&)>& warn);
+  void lock_above();
+  void unlock();
 
   std::filesystem::path folder_;
   std::vector<std::filesystem::path> made_;  ///< folders that were not there before, the deepest last
   int descriptor_ = -1;                      ///< of the folder, which carries the lock
+  std::vector<int> above_;                   ///< of folders around it, each with a shared lock
 };
 
 }  // namespace glisson

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 
 #include "compare/models/engine.h"
@@ -58,16 +59,20 @@ void require_comparable(const Variant& v) {
                                  v.scene_name, v.name));
 }
 
+/// @param tets  of the scene's mesh @param count  of meshes, each with eight times the tets of the one before
+void require_size(const Variant& variant, std::size_t tets, int count) {
+  const double finest = static_cast<double>(tets) * std::pow(8.0, count - 1);
+  if (finest <= kMostTets) return;
+  throw SceneError(
+      fmt::format("{}: compare: the reference would have {:.3g} tets; at most {:.3g}. Take a smaller compare.meshes or "
+                  "compare.finer, or a coarser mesh",
+                  variant.scene_name, finest, kMostTets));
+}
+
 /// The scene's mesh and others, each with the tets of the one before split in eight: vertices keep their numbers.
 std::vector<TetMesh> meshes_of(const Variant& variant, const MeshLoader& load, int count) {
   std::vector<TetMesh> meshes{build_mesh(variant, load)};
-  const double finest = static_cast<double>(meshes.front().tets.size()) * std::pow(8.0, count - 1);
-  if (finest > kMostTets) {
-    throw SceneError(fmt::format(
-        "{}: compare: the reference would have {:.3g} tets; at most {:.3g}. Take a smaller compare.meshes or "
-        "compare.finer, or a coarser mesh",
-        variant.scene_name, finest, kMostTets));
-  }
+  require_size(variant, meshes.front().tets.size(), count);
   while (meshes.size() < static_cast<std::size_t>(count)) {
     const RefinedVariant finer = on_split_mesh(variant, refined(meshes.back()));
     meshes.push_back(build_mesh(finer.variant, finer.load));
@@ -75,7 +80,9 @@ std::vector<TetMesh> meshes_of(const Variant& variant, const MeshLoader& load, i
   return meshes;
 }
 
-std::vector<const Rival*> chosen(const Scene& scene) {
+}  // namespace
+
+std::vector<const Rival*> chosen_models(const Scene& scene) {
   std::vector<const Rival*> list;
   for (const Rival& rival : models::rivals()) {
     const auto& wanted = scene.compare.models;
@@ -91,6 +98,8 @@ std::vector<const Rival*> chosen(const Scene& scene) {
   }
   return list;
 }
+
+namespace {
 
 /// Takes the tets of the region compare.cut out of the body when it says.
 void plan_cut(Problem& problem, const Scene& scene) {
@@ -295,15 +304,20 @@ models::Problem problem_of(const Variant& variant, TetMesh mesh, const CompareSp
 
 namespace {
 
+Problem problem_on(TetMesh mesh, const Scene& scene, const Variant& variant, double test_time) {
+  Problem problem = problem_of(variant, std::move(mesh), scene.compare);
+  problem.test_time = test_time;
+  plan_cut(problem, scene);
+  return problem;
+}
+
 Comparison compare_variant(const Scene& scene, const Variant& variant, double test_time, const MeshLoader& load,
                            const std::atomic<bool>& stop, const std::function<void(const std::string&)>& say) {
-  const std::vector<const Rival*> list = chosen(scene);
+  const std::vector<const Rival*> list = chosen_models(scene);
   const auto meshes = static_cast<std::size_t>(scene.compare.meshes);
   std::vector<Problem> problems;
   for (TetMesh& mesh : meshes_of(variant, load, scene.compare.meshes + scene.compare.finer)) {
-    problems.push_back(problem_of(variant, std::move(mesh), scene.compare));
-    problems.back().test_time = test_time;
-    plan_cut(problems.back(), scene);
+    problems.push_back(problem_on(std::move(mesh), scene, variant, test_time));
   }
   require_measured(scene, problems.front());
   Comparison result;
@@ -335,7 +349,41 @@ Comparison compare_variant(const Scene& scene, const Variant& variant, double te
   return result;
 }
 
+/// The reference of viscous tissue looks at explicit steps on the coarsest mesh, whatever it then takes.
+std::optional<ExpectedTime> time_of_reference(const Problem& coarsest, const std::atomic<bool>& stop) {
+  if (!models::is_viscous(coarsest)) return std::nullopt;
+  const auto own = std::ranges::find(models::rivals(), "glisson", &Rival::name);
+  ExpectedTime expected = expected_time(*own, coarsest, 1, stop);
+  expected.model = "reference";
+  return expected;
+}
+
+void add(std::vector<ExpectedTime>& all, const ExpectedTime& one) {
+  if (one.steps <= 0.0) return;
+  const auto found = std::ranges::find(all, one.model, &ExpectedTime::model);
+  if (found == all.end()) return all.push_back(one);
+  found->steps += one.steps;
+  found->wall_s += one.wall_s;
+}
+
 }  // namespace
+
+std::vector<ExpectedTime> expected_times(const Scene& scene, const MeshLoader& load, const std::atomic<bool>& stop) {
+  for (const Variant& variant : scene.variants) require_comparable(variant);
+  const std::vector<const Rival*> list = chosen_models(scene);
+  std::vector<ExpectedTime> all;
+  for (const Variant& variant : scene.variants) {
+    const Problem coarsest = problem_on(build_mesh(variant, load), scene, variant, middle_duration(scene));
+    require_size(variant, coarsest.mesh.tets.size(), scene.compare.meshes + scene.compare.finer);
+    require_measured(scene, coarsest);
+    for (const Rival* rival : list) {
+      if (stop) return all;
+      add(all, expected_time(*rival, coarsest, scene.compare.meshes, stop));
+    }
+    if (const auto reference = time_of_reference(coarsest, stop)) add(all, *reference);
+  }
+  return all;
+}
 
 std::vector<Comparison> compare(const Scene& scene, const MeshLoader& load, const std::atomic<bool>& stop,
                                 const std::function<void(const std::string&)>& say) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "compare/expected_time.h"
 #include "compare/models/rival.h"
 #include "glisson/scene/convergence.h"
 #include "glisson/scene/scene.h"
@@ -61,6 +62,13 @@ struct Comparison {
 
 /// The experiment of a variant on a mesh. @throws SceneError naming what other models cannot be given
 models::Problem problem_of(const Variant& variant, TetMesh mesh, const CompareSpec& spec);
+
+/// The models that a scene asks for, in the order of the table. @throws SceneError for one that is not there
+std::vector<const models::Rival*> chosen_models(const Scene& scene);
+
+/// What the explicit steps of each model that the scene asks for will take, all variants together; of viscous tissue also those of the
+/// reference, by the name "reference". Models that are given their steps are left out. @throws as compare()
+std::vector<ExpectedTime> expected_times(const Scene& scene, const MeshLoader& load, const std::atomic<bool>& stop);
 
 /// Runs all models that the scene asks for, variant by variant; `say` is told of each before it runs. Where it is stopped, what is done is
 /// returned.

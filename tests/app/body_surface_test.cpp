@@ -5,8 +5,10 @@
 #include <map>
 
 #include "app/program.h"
+#include "glisson/io.h"
 #include "glisson/scene/scene.h"
 #include "report/body_surface.h"
+#include "report/frame_series.h"
 #include "report/surface_recorder.h"
 #include "view/engine/live_body.h"
 #include "view/protocol/messages.h"
@@ -221,6 +223,30 @@ TEST(BodySurface, TravelsInTheKeyframe) {
   const std::size_t corners = 3 * u32(at + 20);
   EXPECT_EQ(bytes.size(), at + 24 + 4 * corners);
   for (std::size_t i = 0; i < corners; ++i) ASSERT_LT(u32(at + 24 + 4 * i), vertices);
+}
+
+class FramesOfAChangedBody : public InFolder {};
+
+// A frame names the tets that were removed: no other array tells them from those that are there. Before that it has no such array.
+TEST_F(FramesOfAChangedBody, NameRemovedTets) {
+  BuiltVariant built = build_variant(nodule_block(), {});
+  FrameSeries frames(folder_);
+  frames.add(built.simulation, built.simulation.tet_fields());
+  const std::vector<std::uint32_t> gone{0, 17, 200};
+  built.simulation.remove_tets(gone);
+  frames.add(built.simulation, built.simulation.tet_fields());
+  frames.finish();
+  const std::vector<std::string> wanted{"removed"};
+  const auto files = read_pvd(folder_ / "frames.pvd");
+  ASSERT_EQ(files.size(), 2U);
+  EXPECT_TRUE(read_frame(folder_ / files[0].second, wanted).tet_fields.empty());
+  const ReadFrame frame = read_frame(folder_ / files[1].second, wanted);
+  ASSERT_EQ(frame.tet_fields.size(), 1U);
+  std::vector<std::uint32_t> named;
+  for (std::uint32_t t = 0; t < frame.mesh.tets.size(); ++t) {
+    if (frame.tet_fields[0].values[t] != 0.0) named.push_back(t);
+  }
+  EXPECT_EQ(named, gone);
 }
 
 }  // namespace

@@ -252,6 +252,35 @@ TEST_F(Compare, HoldsForcesAgainstAMeasurement) {
   EXPECT_THAT(outcome.err, ::testing::HasSubstr("compare.measured_N: 1 forces; give one for each of the 2 stations"));
 }
 
+// A stiff tissue asks for hours of explicit steps: that is said and refused before anything runs, with the models that would do. A soft
+// one runs, and is told its time first.
+TEST_F(Compare, RefusesHoursOfExplicitSteps) {
+  const std::string scene = write("block.toml", kBlock), out = (folder_ / "o").string();
+  const std::string stiff = "tissue={youngs_modulus_Pa=1e12, poisson_ratio=0.3}";
+  const std::vector<std::string> models{"--set", "compare.models=[\"linear_fem\", \"glisson\"]"};
+  const auto with = [&](std::vector<std::string> more) {
+    std::vector<std::string> command{"compare", scene, "--out", out};
+    command.insert(command.end(), models.begin(), models.end());
+    command.insert(command.end(), more.begin(), more.end());
+    return run(command);
+  };
+  // 10 368 tets in about 4e7 steps: hours on any core
+  const Outcome refused = with({"--set", stiff, "--set", "mesh.cells=[12,12,12]"});
+  EXPECT_THAT(refused, Exits(2));
+  EXPECT_THAT(refused.err, ::testing::HasSubstr("explicit steps would take about"));
+  EXPECT_THAT(refused.err, ::testing::HasSubstr("(glisson "));
+  EXPECT_THAT(refused.err, ::testing::HasSubstr("more than --allow-hours 1"));
+  EXPECT_THAT(refused.err, ::testing::HasSubstr("--set 'compare.models=[\"linear_fem\"]'"));
+  EXPECT_FALSE(std::filesystem::exists(out)) << "nothing is written";
+  EXPECT_THAT(with({"--set", stiff, "--set", "compare.models=[\"linear_fem\"]"}), Exits(0));
+  const Outcome soft = with({});
+  EXPECT_THAT(soft, Exits(0));
+  EXPECT_THAT(soft.err, ::testing::HasSubstr("explicit steps will take about"));
+  EXPECT_THAT(soft.err, ::testing::HasSubstr("the longest: glisson "));
+  EXPECT_THAT(with({"--allow-hours", "1e-9"}), Exits(2)) << "the bound is the option's";
+  EXPECT_THAT(with({"--allow-hours", "0"}), Exits(2));
+}
+
 TEST_F(Compare, SaysWhatItCannotGive) {
   const std::string needle = write("needle.toml", std::string(kBlock) +
                                                       "[[instrument]]\nkind = \"needle\"\ntip_m = [0.01, 0.01, 0.021]\n"

@@ -70,6 +70,37 @@ TEST_F(TwoRuns, SecondIsRefusedByName) {
   EXPECT_EQ(read_json(out_ / "thick/summary.json")["end"], "interrupted") << "the first is whole";
 }
 
+// A folder inside that of a running run is refused as that folder is, and not made; so is one around it, whose run would replace it.
+TEST_F(TwoRuns, InsideOrAroundIsRefusedByName) {
+  const std::string scene = write("small.toml", small_scene());
+  const fs::path around = out_;
+  ASSERT_THAT(second({"run", scene}), Exits(0)) << "a former run, which the next may replace";
+  out_ = around / "x" / "y";
+  Started inner = running();
+  const auto before = there();
+  out_ = around;
+  Outcome outcome = second({"run", scene});
+  EXPECT_THAT(outcome, Exits(2));
+  EXPECT_THAT(outcome.err, HasSubstr(around.string() + ": another run is being written inside it by process " +
+                                     std::to_string(inner.id())));
+  out_ = around / "x" / "y";
+  EXPECT_EQ(there(), before) << "nothing has changed";
+  out_ = around / "x" / "z";
+  EXPECT_THAT(second({"run", scene}), Exits(0)) << "beside it is free";
+  out_ = around / "x" / "y" / "deep" / "er";
+  outcome = second({"run", scene});
+  EXPECT_THAT(outcome, Exits(2));
+  EXPECT_THAT(outcome.err,
+              HasSubstr(out_.string() + " is inside the folder of another run. " + (around / "x" / "y").string() +
+                        ": another run is being written there by process " + std::to_string(inner.id())));
+  EXPECT_FALSE(fs::exists(around / "x" / "y" / "deep"));
+  inner.signal(SIGTERM);
+  EXPECT_THAT(inner.wait(), Exits(130));
+  fs::remove_all(around / "x");
+  out_ = around;
+  EXPECT_THAT(second({"run", scene}), Exits(0)) << "free again";
+}
+
 // The system frees the folder of a run that is killed: the next one replaces what it left, without a word.
 TEST_F(TwoRuns, KilledRunLeavesNoLock) {
   Started program = running();

@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "fit/data/load_curves.h"
+#include "fit/data/prepare.h"
 #include "fit/data/section_data.h"
 #include "phantom.h"
 #include "scene/parse/problems.h"
@@ -306,6 +307,63 @@ TEST_F(Machine, SkipsSlipsAndNoPartOfATest) {
 }
 
 const std::filesystem::path kFolder = test::shipped("../shared/data/cases/machine_files");
+
+/// `1:01:02.5` of a time in seconds: hours, minutes and seconds, or minutes and seconds alone.
+std::string clock(double seconds, bool hours, const std::string& decimal = ".", int digits = 3) {
+  const auto whole = static_cast<long>(seconds);
+  const auto two = [](long part) { return (part < 10 ? "0" : "") + std::to_string(part); };
+  std::string text = hours ? two(whole / 3600) + ":" + two(whole / 60 % 60) : std::to_string(whole / 60);
+  const double left = seconds - 60.0 * static_cast<double>(whole / 60);
+  return text + ":" + (left < 10.0 ? "0" : "") + written(left, digits, decimal);
+}
+
+std::string clock_rows(double start, bool hours, const std::string& between = ";", const std::string& decimal = ".",
+                       int digits = 3, double every = 0.1) {
+  std::string text;
+  for (std::size_t i = 0; i < kRows; ++i) {
+    text += clock(start + every * static_cast<double>(i), hours, decimal, digits) + between;
+    text += written(way_at(i), 4, decimal) + between + written(load_at(i), 3, decimal) + "\n";
+  }
+  return text;
+}
+
+// Clock times are seconds since the first row, over the turn of minutes and hours, whatever the name says of their unit; the account says so.
+TEST_F(Machine, ClockTimesAreSecondsSinceTheFirstRow) {
+  const std::vector<std::string> files{"Time;Displacement (mm);Load (mN)\n" + clock_rows(3598.5, true),
+                                       "Time (hh:mm:ss);Displacement (mm);Load (mN)\n" + clock_rows(45296.25, true),
+                                       "Time;Displacement;Load\ns;mm;mN\n" + clock_rows(58.0, false),
+                                       "Time,Displacement (mm),Load (mN)\n" + clock_rows(3598.5, true, ","),
+                                       "Zeit;Weg (mm);Kraft (mN)\n" + clock_rows(3598.5, true, ";", ","),
+                                       "Zeit\tWeg\tKraft\nmm:ss\tmm\tmN\n" + clock_rows(58.0, false, "\t", ",")};
+  for (const std::string& file : files) {
+    SCOPED_TRACE(file.substr(0, 80));
+    const RawTest test = read(file);
+    ASSERT_EQ(test.size(), kRows);
+    EXPECT_FALSE(test.clock.empty());
+    for (std::size_t i = 0; i < kRows; ++i) EXPECT_NEAR(test.time[i], time_at(i), 1e-9) << i;
+    EXPECT_EQ(test.force.back(), digits_of(load_at(kRows - 1), 3) * 1e-3);
+  }
+  const RawTest whole = read("Time;Displacement (mm);Load (mN)\n" + clock_rows(3590.0, true, ";", ".", 0, 1.0));
+  EXPECT_EQ(whole.time.back(), static_cast<double>(kRows - 1));
+  scene::Problems problems("t.csv");
+  const auto prepared =
+      prepare(whole, section("files = [\"t.csv\"]\n"), {.area = 1e-3, .height = 0.02, .radius = 0.015}, problems);
+  ASSERT_TRUE(prepared.has_value());
+  EXPECT_THAT(prepared->account.text(), HasSubstr("clock times, read as seconds since 00:59:50"));
+}
+
+// A clock time of two meanings is refused with the line that mends it; so is a clock that is said to be something else.
+TEST_F(Machine, ClockTimesOfTwoMeaningsAreRefused) {
+  const std::string names = "Time;Displacement (mm);Load (mN)\n";
+  EXPECT_THAT(
+      fault("Time (s);Displacement (mm);Load (mN)\n" + clock_rows(0.0, false, ";", ".", 0, 1.0)),
+      AllOf(HasSubstr("t.csv:2"), HasSubstr("\"0:00\" in \"Time (s)\" is minutes and seconds, or hours and minutes"),
+            HasSubstr("write hours, minutes and seconds (00:0:00)")));
+  EXPECT_THAT(fault(names + clock_rows(10.0, true), "columns.time = { name = \"Time\", unit = \"min\" }\n"),
+              HasSubstr("holds clock times, from \"00:00:10.000\" on, which are read in seconds; leave `unit` out"));
+  EXPECT_THAT(fault(names + clock_rows(10.0, true), "columns.displacement = { name = \"Time\", unit = \"mm\" }\n"),
+              HasSubstr("which are a time"));
+}
 
 struct Known {
   std::string file, keys, specimen;

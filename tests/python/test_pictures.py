@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import base64
+import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
+import zlib
 from pathlib import Path
 
 import glisson
 import matplotlib as mpl
 import numpy as np
 import pytest
+from glisson._fit_charts import fit_charts
 
 mpl.use("Agg")
 PICTURES = Path(__file__).parent / "pictures"
@@ -112,6 +117,46 @@ def test_values_of_a_picture_are_those_of_the_frame(out):
     assert (seen.triangle[50:54, 50:54] == 1).all(), "the nearer one is seen"
 
 
+def with_cells(file: Path, name: str, values: np.ndarray) -> None:
+    """Gives a frame one more array of its tets, in the encoding of the others."""
+    text = file.read_bytes()
+    begin = text.index(b"_", text.index(b"<AppendedData")) + 1
+    end = text.index(b"</AppendedData>")
+    body = text[begin:end].rstrip()
+    raw = values.astype("<f8").tobytes()
+    packed = zlib.compress(raw)
+    head = np.array([1, len(raw), 0, len(packed)], "<u8").tobytes()
+    added = f'<DataArray type="Float64" Name="{name}" NumberOfComponents="1" format="appended" offset="{len(body)}"/>'
+    front = text[:begin].replace(b"</CellData>", added.encode() + b"</CellData>")
+    file.write_bytes(front + body + base64.b64encode(head) + base64.b64encode(packed) + text[end:])
+
+
+def test_removed_tets_are_not_drawn(out, tmp_path):
+    """Tets that `removed` names are gone from the picture, its cut and its colour scale."""
+    from glisson._frames import read_frame
+
+    folder = tmp_path / "out"
+    shutil.copytree(out, folder)
+    whole = read_frame(folder, "soft", 2)
+    upper = whole.rest[whole.tets].mean(axis=1)[:, 2] > 0.015
+    with_cells(folder / "soft/frames/frame_0002.vtu", "removed", upper)
+    left = read_frame(folder, "soft", 2)
+    assert np.array_equal(left.tets, whole.tets[~upper]) and "removed" not in left.cells
+    assert np.array_equal(left.cells["von_mises_Pa"], whole.cells["von_mises_Pa"][~upper])
+    for cut in (None, "x=0.02"):
+        drawn = [channels(_drawn(where, tmp_path, cut)) for where in (out, folder)]
+        body = [(np.ptp(one, axis=0) > 0.02).sum() for one in drawn]  # blocks of pixels that have colour
+        assert structure(*drawn) < 0.9 and 0 < body[1]
+    with pytest.raises(ValueError, match="nothing of the body is left"):
+        glisson.picture(folder, cut="z=16mm", flip=True, variant="soft")
+
+
+def _drawn(out: Path, folder: Path, cut: str | None) -> Path:
+    file = folder / "drawn.png"
+    glisson.picture(out, variant="soft", frame=2, tools=False, labels=False, size=(480, 360), cut=cut, file=file)
+    return file
+
+
 def test_program_and_package_draw_the_same(program, out, tmp_path):
     """`glisson picture` and `glisson plot` run the package's own files, with no display: the same bytes."""
     environment = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "PYTHONPATH")}
@@ -144,6 +189,68 @@ def test_charts_have_lines_names_and_marks(out, tmp_path):
     assert "<image" not in text
     long = [d for d in re.findall(r'<path d="([^"]*)"', text) if len(d) > 400]
     assert len(long) == 2
+
+
+FIT = """
+[specimen]
+kind = "block"
+width_mm = 20
+depth_mm = 20
+height_mm = 20
+[tissue]
+hyperelastic = { kind = "neo_hookean", mu_Pa = 3000, bulk_modulus_Pa = 1e6 }
+[[parameter]]
+key = "tissue.hyperelastic.mu_Pa"
+low = 100
+high = 1e5
+[search]
+starts = 2
+[proof]
+bootstrap = 0
+[[data]]
+name = "slow"
+files = ["a.csv"]
+[[data]]
+name = "fast"
+files = ["b.csv"]
+use = "test"
+"""
+
+
+def test_charts_of_a_fit(program, tmp_path):
+    """A fit's folder has a chart of measured and simulated curves for each group, and one of their residuals, as numbers of fit.json."""
+    rows = [(0.5 * i, 0.1 * i, 0.02 * i + 0.0004 * i * i + 0.002 * (-1) ** i) for i in range(41)]
+    for name, factor in (("a", 1.0), ("b", 1.1)):
+        lines = [f"{t:.3f},{d:.4f},{factor * f:.5f}" for t, d, f in rows]
+        (tmp_path / f"{name}.csv").write_text("time (s),displacement (mm),force (N)\n" + "\n".join(lines) + "\n", encoding="utf-8")
+    (tmp_path / "f.toml").write_text(FIT, encoding="utf-8")
+    subprocess.run([program, "fit", "f.toml", "--out", "out", "--quiet"], cwd=tmp_path, check=True, capture_output=True)
+    environment = os.environ | {"GLISSON_PYTHON": sys.executable}
+    told = subprocess.run([program, "plot", "out", "--svg"], cwd=tmp_path, env=environment, check=True, capture_output=True, text=True)
+    names = ["slow.svg", "fast.svg", "residuals-of-slow.svg", "residuals-of-fast.svg"]
+    assert told.stdout.split()[1::2] == [f"out/plots/{name}" for name in names]
+    by_package = glisson.plot.run(tmp_path / "out", tmp_path / "package")
+    assert [f.name for f in by_package] == names
+    for file in by_package:
+        text = file.read_text(encoding="utf-8")
+        letters = [node.text or "" for node in ElementTree.fromstring(text).iter("{http://www.w3.org/2000/svg}text")]
+        residual, held_out = "residuals" in file.name, "fast" in file.name
+        wanted = ["Residual [kPa]", "± 2 sd of the noise"] if residual else ["Nominal stress [kPa]", "Strain [%]", "measured"]
+        for words in [*wanted, "predicted" if held_out else "simulated"]:
+            assert any(words in row for row in letters), (file.name, words, letters)
+    fit = json.loads((tmp_path / "out/fit.json").read_text(encoding="utf-8"))
+    drawn = dict(fit_charts(fit))
+    axes = mpl.figure.Figure().add_subplot()
+    drawn["Residuals of slow"](axes)
+    curve = fit["curves"][0]
+    left = (np.array(curve["measured_N"]) - np.array(curve["fitted_N"])) * curve["y"]["scale"]
+    assert np.allclose(axes.lines[-1].get_ydata(), left, rtol=1e-12, atol=0)
+    assert axes.get_ylim()[1] == -axes.get_ylim()[0] >= np.abs(left).max()
+    with pytest.raises(ValueError, match="no chart 'depth'.*'slow', 'fast', 'Residuals of slow'"):
+        glisson.plot.run(tmp_path / "out", chart="depth")
+    (tmp_path / "out/fit.json").write_text("[]", encoding="utf-8")
+    with pytest.raises(ValueError, match="not the fit.json of a fit"):
+        glisson.plot.run(tmp_path / "out")
 
 
 def test_what_cannot_be_drawn_is_refused_with_the_way_out(program, out, tmp_path):

@@ -82,6 +82,14 @@ std::optional<std::size_t> index_of(const CurveFile& file, const ColumnSpec& spe
 /// The unit that is said, else that of the file, else of strain a pure number.
 const Unit* unit_of(const CurveFile& file, std::size_t column, const std::string& said, Quantity quantity,
                     const std::string& key, scene::Problems& problems) {
+  if (file.is_clock(column)) {
+    const Unit* seconds = quantity == Quantity::time ? find_unit(quantity, "s") : nullptr;
+    if (seconds && (said.empty() || said == "s")) return seconds;
+    problems.add(at_names(file), key,
+                 "column " + file.title(column) + " holds clock times, from " + in_quotes(file.clocks[column]) +
+                     " on, " + (seconds ? "which are read in seconds; leave `unit` out" : "which are a time"));
+    return nullptr;
+  }
   const std::string in_file = column < file.units.size() ? file.units[column] : std::string{};
   std::string text = said.empty() ? in_file : said;
   if (text.empty() && (quantity == Quantity::strain || quantity == Quantity::stretch)) text = "-";

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <span>
 
 #include "base/input_file.h"
 #include "base/text.h"
+#include "fit/data/clock_time.h"
 #include "fit/data/text_encoding.h"
 #include "fit/data/units.h"
 #include "glisson/scene/scene.h"
@@ -300,6 +302,64 @@ void require_one_notation(const CurveFile& file) {
   }
 }
 
+/// Seconds as the file writes numbers, to a nanosecond.
+std::string seconds_text(double seconds, char decimal) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.9f", seconds);
+  std::string written = text;
+  std::replace(written.begin(), written.end(), '.', decimal);
+  return written;
+}
+
+/// Columns whose fields, in every row of numbers, are clock times of one meaning.
+std::vector<bool> clock_columns(TextRows rows, char decimal) {
+  std::vector<std::size_t> clocks, others;
+  for (const TextRow& row : rows) {
+    if (numbers_in(row, decimal) < kFewestNumbers) continue;
+    if (clocks.size() < row.fields.size()) clocks.resize(row.fields.size()), others.resize(row.fields.size());
+    for (std::size_t i = 0; i < row.fields.size(); ++i) {
+      const bool clock = parse_clock(row.fields[i].text, decimal).has_value();
+      clocks[i] += clock;
+      others[i] += !clock && !is_missing(row.fields[i].text);
+    }
+  }
+  std::vector<bool> found(clocks.size(), false);
+  for (std::size_t i = 0; i < clocks.size(); ++i) found[i] = clocks[i] >= kFewestOfCurve && others[i] == 0;
+  return found;
+}
+
+/// Puts seconds in the place of clock times, so that they are numbers as others are.
+/// @return what was written in each row of each such column; empty for other columns
+std::vector<std::map<std::uint32_t, std::string>> read_clocks(std::vector<TextRow>& rows, char decimal) {
+  const std::vector<bool> columns = clock_columns(rows, decimal);
+  std::vector<std::map<std::uint32_t, std::string>> written(columns.size());
+  for (TextRow& row : rows) {
+    for (std::size_t i = 0; i < std::min(columns.size(), row.fields.size()); ++i) {
+      const auto seconds = columns[i] ? parse_clock(row.fields[i].text, decimal) : std::nullopt;
+      if (!seconds) continue;
+      written[i][row.line] = row.fields[i].text;
+      row.fields[i].text = seconds_text(*seconds, decimal);
+    }
+  }
+  return written;
+}
+
+/// Makes the numbers of clock times count from the first row of the table.
+void count_from_first(CurveFile& file, const std::vector<std::map<std::uint32_t, std::string>>& written) {
+  file.clocks.resize(written.size());
+  for (std::size_t i = 0; i < written.size(); ++i) {
+    double first = 0.0;
+    for (CurveFile::Row& row : file.rows) {
+      const auto clock = written[i].find(row.line);
+      if (clock == written[i].end()) continue;
+      const double seconds = parse_clock(clock->second, file.decimal).value_or(0.0);
+      if (file.clocks[i].empty()) file.clocks[i] = clock->second, first = seconds;
+      row.fields[i].text = seconds_text(seconds - first, file.decimal);
+    }
+    if (file.is_clock(i) && i < file.units.size()) file.units[i] = "s";
+  }
+}
+
 }  // namespace
 
 std::string CurveFile::title(std::size_t column) const {
@@ -313,6 +373,7 @@ CurveFile parse_curve_file(std::string text, const std::filesystem::path& file, 
   std::vector<TextRow> rows = lines_of(decoded.text);
   if (rows.empty()) fail_in(file, 1, "is empty; expected a line of names and rows of numbers");
   const TextStyle style = find_style(rows, spec, file);
+  const auto clocks = read_clocks(rows, style.decimal);
   const Table table = find_table(rows, style.decimal, spec, file);
   if (table.first >= table.last) fail_in(file, rows.back().line, "has no rows of numbers below the columns' names");
   CurveFile result;
@@ -323,6 +384,7 @@ CurveFile parse_curve_file(std::string text, const std::filesystem::path& file, 
   result.columns = usual_width(numbers, style.decimal);
   if (table.named) take_names(result, rows, table);
   for (const TextRow& row : numbers) result.rows.push_back({row.line, row.fields});
+  count_from_first(result, clocks);
   require_whole_numbers(result);
   require_one_notation(result);
   return result;

@@ -35,11 +35,15 @@ struct CurveFile {
   std::uint32_t names_line = 0;    ///< 0: there is none
   std::vector<std::string> names;  ///< as written, trimmed; empty: the file has no line of names
   std::vector<std::string> units;  ///< of each column, from the line below the names or from the name; "": not said
-  std::vector<Row> rows;           ///< from the first row of numbers to the last
-  std::size_t columns = 0;         ///< most rows have as many
+  /// Of columns of clock times the time of the first row, as written; their numbers are seconds since then. Else "".
+  std::vector<std::string> clocks;
+  std::vector<Row> rows;    ///< from the first row of numbers to the last
+  std::size_t columns = 0;  ///< most rows have as many
 
   /// `"Load (N)"`, or `column 3` where it has no name.
   std::string title(std::size_t column) const;
+  /// Whether a column holds clock times.
+  bool is_clock(std::size_t column) const { return column < clocks.size() && !clocks[column].empty(); }
 };
 
 /// @throws SceneError `file:line:column: …` where the file cannot be read, is empty, has no rows of numbers or several tables

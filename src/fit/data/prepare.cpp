@@ -25,6 +25,7 @@ class Preparation {
     account_.rows_skipped = test.rows_skipped;
     account_.rows_merged = test.rows_merged;
     account_.turned = test.turned;
+    account_.clock = test.clock;
     account_.unit = test.measurement.unit;
     account_.drive_unit = test.measurement.point ? "whole strain" : test.measurement.drive_unit;
   }
@@ -280,6 +281,7 @@ std::string CurveAccount::text() const {
   if (rows_skipped > 0) t += ", " + std::to_string(rows_skipped) + " bad ones skipped";
   if (rows_merged > 0) t += ", " + std::to_string(rows_merged) + " of equal time averaged";
   if (cycles > 1) t += ", " + std::to_string(cycles) + " cycles";
+  if (!clock.empty()) t += "; clock times, read as seconds since " + clock;
   for (const std::string& column : turned) t += "; sign of " + column + " turned";
   if (contact_how.starts_with("as recorded (")) t += "; contact " + contact_how;
   if (!contact_how.starts_with("as recorded")) {

@@ -20,6 +20,7 @@ struct CurveAccount {
   std::size_t rows_skipped = 0;     ///< bad ones
   std::size_t rows_merged = 0;      ///< averaged with the row before, of the same time
   std::vector<std::string> turned;  ///< columns whose sign was turned
+  std::string clock;                ///< the first time, as written, where the times are those of a clock; else ""
   std::size_t cycles = 0;           ///< found
   std::size_t rows_in_cycle = 0;
   std::size_t rows_before_contact = 0;

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "fit/data/choose_column.h"
+#include "fit/data/clock_time.h"
 #include "fit/data/samples.h"
 #include "fit/data/test_columns.h"
 
@@ -30,6 +31,10 @@ std::string fault_of(const CurveFile& file, const CurveFile::Row& row, const Cho
   if (column.index >= row.fields.size())
     return "has " + std::to_string(row.fields.size()) + " fields, none for " + column.source.title;
   const std::string& text = row.fields[column.index].text;
+  if (is_twofold_clock(text))
+    return "\"" + text + "\" in " + column.source.title +
+           " is minutes and seconds, or hours and minutes; write hours, minutes and seconds (00:" + text +
+           "), or seconds alone, or choose another column";
   const char* fault = parse_number(text, file.decimal) ? "\" is beyond any measurement" : "\" is no finite number";
   std::string what = text.empty() ? "is empty" : "\"" + text.substr(0, 40) + fault;
   const bool other_mark =
@@ -397,6 +402,7 @@ RawTest raw_test(const CurveFile& file, const DataSpec& spec, const SpecimenSize
   const std::optional<Reading> time = columns->time ? std::optional(reading(*columns->time)) : std::nullopt;
   std::vector<const Reading*> readings{&driven, &answering};
   if (time) readings.push_back(&*time);
+  if (time && file.is_clock(time->column.index)) test.clock = file.clocks[time->column.index];
   const std::vector<ChosenColumn> checked =
       spec.test == LabTest::compression ? check_columns(file) : std::vector<ChosenColumn>{};
   for (const ChosenColumn& c : checked) test.checks.push_back({c.source, {}});

@@ -35,6 +35,7 @@ struct RawTest {
   Source time_source, displacement_source, force_source;
   std::vector<CheckColumn> checks;  ///< stresses and strains beside force and way
   std::vector<std::string> turned;  ///< titles of the columns whose sign was turned
+  std::string clock;                ///< the first time, as written, where the times are those of a clock; else ""
   Measurement measurement{};
   std::size_t rows_skipped = 0;  ///< without a number in a column that is needed
   std::size_t rows_merged = 0;   ///< of the same time as the row before, averaged with it

@@ -108,6 +108,7 @@ Answer run(const Problem& problem, const std::map<int, Tissue>& tissues, Simulat
     answer.forces.push_back(now);
   }
   answer.run_s = watch.lap();
+  answer.share_done = std::min(1.0, simulation.time() / problem.duration);
   answer.bytes =
       static_cast<std::size_t>(simulation.engine_info().bytes_per_tet * static_cast<double>(problem.mesh.tets.size()));
   return answer;

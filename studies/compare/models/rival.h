@@ -79,6 +79,7 @@ struct Answer {
   double run_s = 0.0;               ///< from the first step to the end [s]
   std::size_t bytes = 0;            ///< of the model's own arrays
   std::size_t steps = 0;            ///< that it made
+  double share_done = 0.0;          ///< of the experiment, in 0 to 1: below 1 where it was stopped; 0: not known
   double cut_s = 0.0;               ///< of run_s, what the cut took [s]
   std::string trouble;              ///< why there is no answer; empty where there is one
 };
@@ -93,6 +94,8 @@ struct Rival {
   std::string_view cannot;          ///< what it cannot do at all, whatever it spends
   std::span<const Effort> efforts;  ///< that are tried, from the cheapest; one or more
   Answer (*run)(const Problem& problem, const Effort& effort, const Stop& stop);
+  /// As many steps as stability asks for, whatever the effort: a stiff tissue has any number of them.
+  bool explicit_steps = false;
 };
 
 /// All models, in the order of the table.

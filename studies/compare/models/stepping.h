@@ -16,9 +16,9 @@ Answer run_in_steps(const Problem& problem, const Stop& stop, Model& model, std:
   Answer answer;
   answer.setup_s = watch.lap();
   const double h = problem.duration / static_cast<double>(steps);
-  std::size_t next = 0;
+  std::size_t next = 0, n = 0;
   bool whole = problem.cut.has_value();
-  for (std::size_t n = 0; n < steps && !stop; ++n) {
+  for (; n < steps && !stop; ++n) {
     if (whole && h * static_cast<double>(n) >= problem.cut->time) {
       whole = false;
       Stopwatch knife;
@@ -35,7 +35,8 @@ Answer run_in_steps(const Problem& problem, const Stop& stop, Model& model, std:
   answer.run_s = watch.lap();
   answer.displacement = model.displacement();
   answer.bytes = model.bytes();
-  answer.steps = steps;
+  answer.steps = n;
+  answer.share_done = static_cast<double>(n) / static_cast<double>(steps);
   return answer;
 }
 
