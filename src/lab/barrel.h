@@ -19,22 +19,10 @@
 #include <memory>
 #include <vector>
 
+#include "lab/grip.h"
 #include "lab/meridian_solid.h"
 
 namespace glisson::lab {
-
-/// How a cylinder's faces meet the plates.
-enum class Faces {
-  smooth,    ///< without friction: it deforms alike all over
-  friction,  ///< they slide against adhesion and Coulomb's friction
-  bonded     ///< they do not slide
-};
-
-/// What holds a face that slides.
-struct Grip {
-  double friction = 0.0;  ///< f ≥ 0 [-]
-  double adhesion = 0.0;  ///< τ ≥ 0, on the area at rest [Pa]
-};
 
 /// Elements along the radius and along half the height; each is `grading` times the one before it.
 struct BarrelGrid {

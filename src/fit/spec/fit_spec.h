@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "fit/data/data_spec.h"
-#include "fit/forward/section_forward.h"
+#include "fit/forward/forward_spec.h"
 #include "fit/search/loss.h"
 #include "fit/spec/insertion_spec.h"
 #include "glisson/scene/scene.h"

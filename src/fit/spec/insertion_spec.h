@@ -4,8 +4,6 @@
 #include <cstdint>
 #include <string>
 
-#include "scene/parse/schema.h"
-
 namespace glisson::fit {
 
 struct InsertionSpec {
@@ -19,7 +17,5 @@ struct InsertionSpec {
   double peak = 1e-3;        ///< the force before a drop counts as much as that length of the curve [m]
   std::int32_t runs = 8;     ///< of the scene, at most
 };
-
-const scene::SectionSpec& insertion_section();
 
 }  // namespace glisson::fit

@@ -14,6 +14,7 @@ const scene::SectionSpec& search_section();      ///< fills SearchSpec
 const scene::SectionSpec& proof_section();       ///< fills ProofSpec
 const scene::SectionSpec& fit_law_section();     ///< fills LawSpec
 const scene::SectionSpec& experiment_section();  ///< fills ExperimentSpec
+const scene::SectionSpec& insertion_section();   ///< fills InsertionSpec
 const scene::SectionSpec& fit_section();         ///< the whole file; fills FitSpec
 
 /// The keys and values of a table as overrides of a scene. Nested tables become one override each.

@@ -1,4 +1,5 @@
 #include "fit/spec/insertion_spec.h"
+#include "fit/spec/section_fit.h"
 #include "scene/parse/section.h"
 
 namespace glisson::fit {

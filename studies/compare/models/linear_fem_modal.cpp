@@ -11,7 +11,7 @@
 
 #include "compare/models/linear_stiffness.h"
 #include "compare/models/stopwatch.h"
-#include "src/base/symmetric_eigen.h"
+#include "base/symmetric_eigen.h"
 
 namespace glisson::models {
 namespace {
