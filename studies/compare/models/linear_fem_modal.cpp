@@ -9,9 +9,9 @@
 #include <array>
 #include <cmath>
 
+#include "base/symmetric_eigen.h"
 #include "compare/models/linear_stiffness.h"
 #include "compare/models/stopwatch.h"
-#include "base/symmetric_eigen.h"
 
 namespace glisson::models {
 namespace {
