@@ -62,6 +62,7 @@ class Surface {
   template <class OfTet>
   std::vector<double> mean(OfTet of_tet) const;
   std::vector<double> of_stress(Field field, const Snapshot& state);
+  std::vector<double> of_record(Field field, const Snapshot& state) const;
   void build_near_body(const std::map<int, Tissue>& tissues);
   std::vector<BranchMemory> near_branches(const Snapshot& state) const;
 
