@@ -18,6 +18,14 @@ json tool_json(const Instrument& x) {
       {"name", x.name()}, {"instrument", x.form().kind != InstrumentForm::Kind::none}, {"direction", {d.x, d.y, d.z}}};
 }
 
+/// The vessel about the body; a wall without end has no height here. None: null.
+json container_json(const Variant& variant) {
+  if (!variant.container) return nullptr;
+  json form = vessel_json(variant.container->options, {});
+  if (!(form["height_m"] > 0.0)) form["height_m"] = nullptr;
+  return form;
+}
+
 json head(const std::string& scene, const Variant& variant,
           const std::vector<std::shared_ptr<Instrument>>& instruments) {
   json tools = json::array(), held = json::array(), driven = json::array();
@@ -30,6 +38,7 @@ json head(const std::string& scene, const Variant& variant,
           {"tools", std::move(tools)},
           {"held", std::move(held)},
           {"driven", std::move(driven)},
+          {"container", container_json(variant)},
           {"instruments", instrument_forms_json(instruments)}};
 }
 

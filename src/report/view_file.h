@@ -1,6 +1,6 @@
 // view_file.h — view.jsonl: what it takes beside frames and forces to show a run again (`glisson view DIR`).
 //
-//   {"format":1,"scene":…,"label":…,"tools":[{"name","instrument","direction"}],"held":[…],"driven":[…],"instruments":[form]}
+//   {"format":1,"scene":…,"label":…,"tools":[{"name","instrument","direction"}],"held":[…],"driven":[…],"container":vessel,"instruments":[form]}
 //   {"time_s":…,"instruments":[place],"torn":[vertices]}                                            a line for each frame
 //
 // `torn`, three vertices for each triangle of a capsule that is torn or open, stands where it has become another since the line before.

@@ -107,6 +107,82 @@ TEST_F(ViewReplay, MarksWhatIsHeldAndDriven) {
   EXPECT_GT(std::count(marks.begin(), marks.end(), 2), 0) << "where the tool presses";
 }
 
+/// The arrays of a frame as it is on disk.
+std::vector<double> array_in(const fs::path& file, const std::string& name) {
+  const std::vector<std::string> wanted{name};
+  const ReadFrame frame = read_frame(file, wanted);
+  const auto& fields = frame.tet_fields.empty() ? frame.vertex_fields : frame.tet_fields;
+  return fields.empty() ? std::vector<double>() : fields.front().values;
+}
+
+// The stress of a recorded run is that of its frames, on straight lines between them, and none is read until somebody asks for it.
+TEST_F(ViewReplay, ShowsTheStressOfItsFrames) {
+  const view::RunFolder run = view::open_run(recorded(), "");
+  Watching watching(run);
+  EXPECT_TRUE(watching.replay.has_stress());
+  EXPECT_TRUE(watching.at(run.frames[2].time).von_mises.empty()) << "nobody looks at it";
+  watching.replay.want_fields(true, false);
+  const std::vector<double> two = array_in(run.frames[2].file, "von_mises_Pa"),
+                            three = array_in(run.frames[3].file, "von_mises_Pa"),
+                            pressure = array_in(run.frames[5].file, "pressure_Pa");
+  const view::Snapshot state = watching.at(0.75 * run.frames[2].time + 0.25 * run.frames[3].time);
+  ASSERT_EQ(state.von_mises.size(), two.size());
+  double most = 0.0;
+  for (std::size_t t = 0; t < two.size(); ++t) {
+    most = std::max(most, three[t]);
+    EXPECT_NEAR(state.von_mises[t], 0.75 * two[t] + 0.25 * three[t], 1e-4 * most + 1e-9);
+  }
+  EXPECT_GT(most, 10.0);
+  const view::Snapshot last = watching.at(run.frames[5].time);
+  view::Surface surface(last.shape);
+  const std::vector<double> shown = surface.field(view::Field::pressure, last);
+  for (std::size_t v = 0; v < surface.size(); ++v) {
+    double sum = 0.0, count = 0.0;
+    for (std::size_t t = 0; t < pressure.size(); ++t) {
+      const Tet& tet = last.shape->mesh.tets[t];
+      if (std::find(tet.begin(), tet.end(), surface.mesh_vertex(v)) == tet.end()) continue;
+      sum += pressure[t], count += 1.0;
+    }
+    EXPECT_NEAR(shown[v], sum / count, 1e-6 * std::abs(sum)) << v;
+  }
+}
+
+// Frames without stress, as of an older run, offer none and show none.
+TEST_F(ViewReplay, OffersNoStressWhereFramesHaveNone) {
+  const fs::path folder = recorded();
+  for (int i = 0; i < 6; ++i) {
+    const fs::path file = folder / ("main/frames/frame_000" + std::to_string(i) + ".vtu");
+    const std::vector<std::string> wanted{"displacement_m"};
+    const ReadFrame frame = read_frame(file, wanted);
+    write_vtu(file, frame.mesh, {}, frame.vertex_fields);
+  }
+  Watching watching(view::open_run(folder, ""));
+  EXPECT_FALSE(watching.replay.has_stress());
+  watching.replay.want_fields(true, true);
+  const view::Snapshot state = watching.at(0.05);
+  view::Surface surface(state.shape);
+  for (const double x : surface.field(view::Field::von_mises, state)) EXPECT_EQ(x, 0.0);
+}
+
+// The container about a recorded body, with a wall without end drawn above it, as the live view and the report have it; none where there
+// is none, or where the run is from an older glisson.
+TEST_F(ViewReplay, HasTheContainer) {
+  const auto vessel = [&](const std::string& container) {
+    const fs::path folder = recorded(container);
+    const nlohmann::json head = report_data(folder / "report.html")["scenes"][0]["variants"][0]["surface"];
+    const std::string own = view::Replay(view::open_run(folder, "")).vessel();
+    return std::pair(own.empty() ? nlohmann::json() : nlohmann::json::parse(own), head);
+  };
+  const std::string box = "[container]\nkind = \"box\"\nwidth_mm = 60\nlength_mm = 50\n";
+  const auto [open, reported] = vessel(box);
+  EXPECT_EQ(open["kind"], "box");
+  EXPECT_EQ(open["width_m"], 0.06);
+  EXPECT_EQ(open, reported["container"]) << "as in the report";
+  EXPECT_GT(open["height_m"].get<double>(), 0.02);
+  EXPECT_EQ(vessel(box + "height_mm = 7\n").first["height_m"], 0.007);
+  EXPECT_TRUE(vessel("").first.is_null());
+}
+
 // A block that a blade has parted shows both faces of its section of 4 cm² as cut, from the frame of the cut on and not before, in
 // whatever order frames are asked for.
 TEST_F(ViewReplay, TellsCutFacesFromSkin) {

@@ -17,6 +17,9 @@ namespace glisson::view {
 struct LoadedFrame {
   std::shared_ptr<const BodyShape> shape;
   std::vector<Vec3d> displacement;  ///< per vertex [m]
+  bool has_fields = false;          ///< whether it was read with these
+  std::vector<double> pressure, von_mises,
+      contact_pressure;  ///< per tet, per tet, per vertex [Pa]; empty: not in the file
 };
 
 class FrameCache {
@@ -24,9 +27,9 @@ class FrameCache {
   /// @param run  outlives this @param most_bytes  that frames may take; two are always kept
   explicit FrameCache(const RunFolder& run, std::size_t most_bytes = 256'000'000) : run_(run), most_(most_bytes) {}
 
-  /// @return a frame by its number, valid as long as it is held
+  /// @return a frame by its number, valid as long as it is held @param fields  with its fields
   /// @throws FileError where it cannot be read; the disk is not asked again then
-  std::shared_ptr<const LoadedFrame> at(std::size_t number);
+  std::shared_ptr<const LoadedFrame> at(std::size_t number, bool fields = false);
   /// Whether a frame could be read and is in memory.
   bool has(std::size_t number) const;
   std::size_t bytes() const { return bytes_; }
@@ -37,8 +40,8 @@ class FrameCache {
     std::size_t number = 0, bytes = 0;
     std::shared_ptr<const LoadedFrame> frame;
   };
-  std::shared_ptr<const LoadedFrame> read(std::size_t number);
-  std::shared_ptr<const LoadedFrame> read_once(std::size_t number);
+  std::shared_ptr<const LoadedFrame> read(std::size_t number, bool fields);
+  std::shared_ptr<const LoadedFrame> read_once(std::size_t number, bool fields);
 
   const RunFolder& run_;
   std::size_t most_, bytes_ = 0, reads_ = 0;

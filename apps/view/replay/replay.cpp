@@ -6,7 +6,10 @@
 #include <chrono>
 #include <cmath>
 
+#include <nlohmann/json.hpp>
+
 #include "glisson/io.h"
+#include "report/json_text.h"
 
 namespace glisson::view {
 namespace {
@@ -23,6 +26,27 @@ double preferred_rate(double duration) {
   return *std::min_element(kRates.begin(), kRates.end(), [&](double a, double b) { return off(a) < off(b); });
 }
 
+/// Values between those of two frames.
+void mix(std::vector<double>& values, const std::vector<double>& next, double share) {
+  if (next.size() != values.size()) return;
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] += (next[i] - values[i]) * share;
+}
+
+/// A wall without end is drawn somewhat higher than the body, as in reports.
+std::string with_height(const std::string& form, const std::vector<Vec3d>& vertices) {
+  constexpr double kAbove = 1.15;  // instrument_json.cpp has the same
+  if (form.empty()) return form;
+  nlohmann::json vessel = nlohmann::json::parse(form);
+  if (!vessel["height_m"].is_null()) return form;
+  const auto origin = vessel["origin"].get<std::array<double, 3>>();
+  const auto axes = vessel["axes"].get<std::array<double, 9>>();
+  double top = 0.0;
+  for (const Vec3d& x : vertices)
+    top = std::max(top, dot(x - Vec3d{origin[0], origin[1], origin[2]}, Vec3d{axes[2], axes[5], axes[8]}));
+  vessel["height_m"] = kAbove * top;
+  return json_text(vessel);
+}
+
 static_assert(kReplaySamples < 8192, "the ring takes them all at once");
 
 }  // namespace
@@ -31,7 +55,9 @@ Replay::Replay(RunFolder run) : run_(std::move(run)), frames_(run_) {
   recorded_ = {run_.frames.front().time, run_.frames.back().time, run_.frames.size()};
   time_ = recorded_.start;
   rate_ = preferred_rate(recorded_.end - recorded_.start);
-  shown_ = frames_.at(0);
+  shown_ = frames_.at(0, true);
+  has_stress_ = !shown_->pressure.empty() && !shown_->von_mises.empty();
+  run_.vessel = with_height(run_.vessel, shown_->shape->mesh.vertices);
   vertices_ = shown_->shape->mesh.vertices.size();
   tets_ = shown_->shape->mesh.tets.size();
   for (const ForceLine& line : thinned(run_.forces, kReplaySamples)) {
@@ -152,12 +178,13 @@ void Replay::show_body(Snapshot& state) {
   const std::size_t before = frame_before(time_), after = std::min(before + 1, run_.frames.size() - 1);
   const double span = run_.frames[after].time - run_.frames[before].time;
   const double share = span > 0.0 ? (time_ - run_.frames[before].time) / span : 0.0;
+  const bool fields = want_fields_.load();
   std::shared_ptr<const LoadedFrame> next;
   const WallClock::time_point begin = WallClock::now();
   try {
     notice_.clear();
-    shown_ = frames_.at(before);
-    if (share > 0.0) next = frames_.at(after);
+    shown_ = frames_.at(before, fields);
+    if (share > 0.0) next = frames_.at(after, fields);
   } catch (const std::exception& error) {  // a forged frame may be anything but a file that cannot be read
     notice_ = std::string(error.what()) + "; the frame before it is shown.";
     if (!frames_.has(before)) shown_ = readable_before(before);
@@ -170,9 +197,15 @@ void Replay::show_body(Snapshot& state) {
   state.shape = shape_;
   state.shape_number = shape_number_;
   state.displacement = shown_->displacement;
+  state.pressure = fields ? shown_->pressure : std::vector<double>();
+  state.von_mises = fields ? shown_->von_mises : std::vector<double>();
+  state.contact_pressure = fields ? shown_->contact_pressure : std::vector<double>();
   if (!next || next->shape != shape_) return;
   for (std::size_t v = 0; v < state.displacement.size(); ++v)
     state.displacement[v] += (next->displacement[v] - state.displacement[v]) * share;
+  mix(state.pressure, next->pressure, share);
+  mix(state.von_mises, next->von_mises, share);
+  mix(state.contact_pressure, next->contact_pressure, share);
 }
 
 void Replay::show_tools(Snapshot& state) const {

@@ -40,7 +40,9 @@ class Replay final : public Source {
   const std::string& forms() const override { return run_.forms; }
   bool can_grab() const override { return false; }
   const std::string& why_no_cut() const override { return why_no_cut_; }
-  bool has_stress() const override { return false; }
+  bool has_stress() const override { return has_stress_; }
+  void want_fields(bool stress, bool contact) override { want_fields_.store(stress || contact); }
+  std::string vessel() const override { return run_.vessel; }
   std::size_t vertices() const override { return vertices_; }
   std::size_t tets() const override { return tets_; }
   const Recorded* recorded() const override { return &recorded_; }
@@ -67,7 +69,8 @@ class Replay final : public Source {
   Inbox inbox_;
   Ring<ForceSample, 8192> samples_;
   Latest<Snapshot> latest_;
-  std::atomic<bool> stop_{false};
+  std::atomic<bool> stop_{false}, want_fields_{false};
+  bool has_stress_ = false;  ///< the first frame has
   std::thread thread_;
 
   // Of the replay's thread.

@@ -26,8 +26,10 @@ struct RunFrame {
 
 struct RunFolder {
   std::string title, label;
-  std::vector<ToolInfo> tools;            ///< driven sets, then instruments
-  std::string forms = "[]";               ///< of the instruments, a JSON list as web/src/report_data.ts has it
+  std::vector<ToolInfo> tools;  ///< driven sets, then instruments
+  std::string forms = "[]";     ///< of the instruments, a JSON list as web/src/report_data.ts has it
+  std::string
+      vessel{};  ///< VesselForm of web/src/report_data.ts, `height_m` null where its wall has no end; empty: there is no container
   std::vector<std::string> held, driven;  ///< names of vertex sets
   std::vector<RunFrame> frames;           ///< one or more, ascending in time
   std::vector<ForceLine> forces;          ///< ascending in time; may be none

@@ -29,6 +29,27 @@ std::string forms_of(const JsonField& list) {
   return json_text(list.raw());
 }
 
+std::vector<double> first_numbers(const JsonField& list, std::size_t count) {
+  std::vector<double> numbers;
+  for (std::size_t i = 0; i < count; ++i) numbers.push_back(list.at(i).number());
+  return numbers;
+}
+
+/// The container, each of its values looked at; empty where there is none, or the run is from an older glisson.
+std::string vessel_of(const JsonField& head) {
+  const auto form = head.find("container");
+  if (!form || form->raw().is_null()) return {};
+  nlohmann::json vessel{{"kind", form->at("kind").text()},
+                        {"origin", first_numbers(form->at("origin"), 3)},
+                        {"axes", first_numbers(form->at("axes"), 9)}};
+  vessel["height_m"] = nullptr;
+  if (!form->at("height_m").raw().is_null()) vessel["height_m"] = form->at("height_m").number();
+  for (const char* size : {"radius_m", "width_m", "length_m"}) {
+    if (const auto value = form->find(size)) vessel[size] = value->number();
+  }
+  return json_text(vessel);
+}
+
 void take_head(const JsonField& head, RunFolder& run) {
   if (head.at("format").number() != 1.0) throw JsonError("format: expected 1, as this glisson writes it");
   std::vector<ToolInfo> tools;
@@ -41,11 +62,12 @@ void take_head(const JsonField& head, RunFolder& run) {
   }
   std::vector<std::string> held = texts_of(head.at("held")), driven = texts_of(head.at("driven"));
   std::string forms = forms_of(head.at("instruments")), title = head.at("scene").text(),
-              label = head.at("label").text();
+              label = head.at("label").text(), vessel = vessel_of(head);
   run.tools = std::move(tools);  // all of the head, or nothing
   run.held = std::move(held);
   run.driven = std::move(driven);
   run.forms = std::move(forms);
+  run.vessel = std::move(vessel);
   run.title = std::move(title);
   run.label = std::move(label);
 }

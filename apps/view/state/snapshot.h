@@ -94,6 +94,9 @@ struct Snapshot {
   BranchRecord branches;        ///< where someone wants to see the stress, else none
   std::vector<double>
       contact_pressure;  ///< per vertex [Pa], where someone wants to see it and something touches, else empty
+  /// Of a recorded run per tet [Pa], where someone wants to see them and the frames have them, else empty; a simulated body has what
+  /// they follow from.
+  std::vector<double> pressure, von_mises;
   std::vector<ToolState> tools;
   Vec3d grab_force{};
   double cut_area = 0.0, cut_longest = 0.0;  ///< of what the hand's blade has cut, at rest [m²]; that a piece took [s]

@@ -134,6 +134,7 @@ std::vector<double> Surface::mean(OfTet of_tet) const {
 }
 
 std::vector<double> Surface::field(Field field, const Snapshot& state) {
+  if (is_of_stress(field) && !state.tissues) return of_record(field, state);
   if (is_of_stress(field)) return of_stress(field, state);
   if (field == Field::contact_pressure) {
     std::vector<double> own(vertices_.size(), 0.0);
@@ -162,6 +163,13 @@ std::vector<double> Surface::of_stress(Field field, const Snapshot& state) {
   const std::vector<double> values =
       field == Field::pressure ? pressure_of(fields.stress) : von_mises_of(fields.stress);
   return mean([&](std::size_t i) { return values[i]; });
+}
+
+/// What the frames of a recorded run say; 0 where they do not.
+std::vector<double> Surface::of_record(Field field, const Snapshot& state) const {
+  const std::vector<double>& values = field == Field::pressure ? state.pressure : state.von_mises;
+  if (values.size() != shape_->mesh.tets.size()) return std::vector<double>(vertices_.size(), 0.0);
+  return mean([&](std::size_t i) { return values[near_[i].number]; });
 }
 
 }  // namespace glisson::view

@@ -65,6 +65,7 @@ class Surface {
   template <class OfTet>
   std::vector<double> mean(OfTet of_tet) const;
   std::vector<double> of_stress(Field field, const Snapshot& state);
+  std::vector<double> of_record(Field field, const Snapshot& state) const;
 
   struct NearTet {
     Tet tet;
