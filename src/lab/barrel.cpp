@@ -113,7 +113,7 @@ void Barrel::add_friction(Balance& face) const {
   for (std::size_t k = 0; k < by_u.size(); ++k) face.by_u[k] += by_u[k];
 }
 
-/// The step that Newton's method takes off u and, as its result, off s: a band, bordered by the face's balance.
+/// The step that Newton's method takes off u and, as its result, off s: the tangent, bordered by the face's balance.
 double Barrel::solve_step(Balance& face, std::vector<double>& step) {
   std::vector<double> lead(solid_.unknowns(), 0.0);  // ∂(∂W/∂u)/∂s
   for (std::size_t c = 0; c < mesh_->columns(); ++c)

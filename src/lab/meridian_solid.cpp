@@ -1,6 +1,19 @@
 #include "lab/meridian_solid.h"
 
 namespace glisson::lab {
+namespace {
+
+/// The unknowns of each element.
+std::vector<std::vector<std::size_t>> unknowns_of(const std::vector<MeridianElement>& elements) {
+  std::vector<std::vector<std::size_t>> groups;
+  for (const MeridianElement& e : elements) {
+    std::vector<std::size_t>& group = groups.emplace_back();
+    for (const std::size_t vertex : e.vertices) group.insert(group.end(), {2 * vertex, 2 * vertex + 1});
+  }
+  return groups;
+}
+
+}  // namespace
 
 void MeridianState::extrapolate(const MeridianState& last, const MeridianState& before, double ahead) {
   for (std::size_t k = 0; k < u.size(); ++k) u[k] += ahead * (last.u[k] - before.u[k]);
@@ -9,8 +22,8 @@ void MeridianState::extrapolate(const MeridianState& last, const MeridianState& 
 }
 
 MeridianSolid::MeridianSolid(std::shared_ptr<const MeridianMesh> mesh, const HyperelasticLaw& law)
-    : force(2 * mesh->columns() * mesh->rows()), tangent(force.size(), 4 * mesh->rows() + 5), mesh_(std::move(mesh)),
-      law_(law), pressures_(mesh_->elements.size()) {}
+    : force(2 * mesh->columns() * mesh->rows()), tangent(force.size(), unknowns_of(mesh->elements)),
+      mesh_(std::move(mesh)), law_(law), pressures_(mesh_->elements.size()) {}
 
 MeridianState MeridianSolid::at_rest() const {
   return {std::vector<double>(unknowns(), 0.0), std::vector<MeridianElement::Linear>(pressures_.size())};
@@ -27,10 +40,8 @@ bool MeridianSolid::assemble(const MeridianState& state) {
     const MeridianElement::Answer a = e.answer(law_, u, state.pressures[index]);
     if (a.folded) return false;
     pressures_[index] = a.pressure;
-    for (std::size_t i = 0; i < u.size(); ++i) {
-      force[dof(i)] += a.force[i];
-      for (std::size_t k = 0; k < u.size(); ++k) tangent(dof(i), dof(k)) += a.tangent[i][k];
-    }
+    for (std::size_t i = 0; i < u.size(); ++i) force[dof(i)] += a.force[i];
+    tangent.add(index, a.tangent);
   }
   return true;
 }

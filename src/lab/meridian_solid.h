@@ -7,8 +7,8 @@
 #include <memory>
 #include <vector>
 
-#include "lab/band_matrix.h"
 #include "lab/meridian_mesh.h"
+#include "lab/tangent_matrix.h"
 
 namespace glisson::lab {
 
@@ -36,7 +36,7 @@ class MeridianSolid {
   const HyperelasticLaw& law() const { return law_; }
 
   std::vector<double> force;  ///< ∂W/∂u [N]
-  BandMatrix tangent;
+  TangentMatrix tangent;
 
  private:
   std::shared_ptr<const MeridianMesh> mesh_;
