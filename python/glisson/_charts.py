@@ -10,6 +10,7 @@ import os
 import re
 import unicodedata
 from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -231,11 +232,11 @@ def _all_charts(
     for scene in report["scenes"]:
         for spec in charts_of(scene):
             name = spec["title"] if len(report["scenes"]) == 1 else f"{scene['name']} {spec['title']}"
-            charts.append((name, spec["title"], lambda scene=scene, spec=spec: draw_chart(scene, spec, variants, size_mm)))
+            charts.append((name, spec["title"], partial(draw_chart, scene, spec, variants, size_mm)))
     several = len(report["scenes"]) + len(report["fits"]) > 1
     for fit in report["fits"]:
         for title, draw in fit_charts(fit):
-            charts.append((f"{fit.get('name', 'fit')} {title}" if several else title, title, lambda draw=draw: _figure_of(draw, size_mm)))
+            charts.append((f"{fit.get('name', 'fit')} {title}" if several else title, title, partial(_figure_of, draw, size_mm)))
     return charts
 
 

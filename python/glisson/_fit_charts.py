@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -55,10 +56,10 @@ def fit_charts(fit: dict[str, Any]) -> list[tuple[str, Callable[[Any], None]]]:
         size[label] = max(size.get(label, 0.0), float(known.max(initial=0.0)))
     charts: list[tuple[str, Callable[[Any], None]]] = []
     for title, curves in groups.items():
-        charts.append((title, lambda ax, curves=curves: _draw_curves(ax, curves)))
+        charts.append((title, partial(_draw_curves, curves=curves)))
     for title, curves in groups.items():
         most = _ROOM * size[curves[0].raw["y"]["label"]]
-        charts.append((f"Residuals of {title}", lambda ax, curves=curves, most=most: _draw_residuals(ax, curves, most)))
+        charts.append((f"Residuals of {title}", partial(_draw_residuals, curves=curves, most=most)))
     return charts
 
 
@@ -77,7 +78,7 @@ def _curve(raw: dict[str, Any]) -> _Curve:
     scale_y = float(raw["y"]["scale"])
 
     def of(*names: str) -> Any:
-        values = next((raw[name] for name in names if name in raw), [])
+        values: list[float | None] = next((raw[name] for name in names if name in raw), [])
         return np.array([np.nan if v is None else v for v in values], dtype=float)
 
     x = of("time_s") if raw["x"].get("of") == "time" else of("drive", "displacement_m")
