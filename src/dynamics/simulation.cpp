@@ -134,13 +134,18 @@ Simulation::Impl& Simulation::inside() const {
   throw std::logic_error("simulation: it was moved from; it can be assigned to or destroyed, and no more");
 }
 
-void Simulation::Impl::refuse_half_a_step(const std::string& name) const {
-  if (busy != Busy::no) refuse_while_busy(name);
+thread_local const Simulation::Impl::Asking* Simulation::Impl::Asking::innermost = nullptr;
+
+bool Simulation::Impl::Asking::is_going_on(const Impl& inside) {
+  const Asking* asking = innermost;
+  while (asking != nullptr && &asking->inside_ != &inside) asking = asking->outer_;
+  return asking != nullptr;
 }
 
 void Simulation::Impl::refuse_while_busy(const std::string& name, Busy most) const {
-  if (busy <= most && asking == 0) return;
-  if (busy == Busy::between_steps && asking == 0) {
+  const bool asks = Asking::is_going_on(*this);
+  if (busy <= most && !asks) return;
+  if (busy == Busy::between_steps && !asks) {
     throw std::logic_error(name + ": it was called from Interaction::between_steps, which may change the body, but " +
                            "neither step nor go to another state; call it after the step");
   }

@@ -1,7 +1,6 @@
 // simulation_impl.h — what a Simulation holds: the mesh that it shows, the scheme that moves its body, and what guards both.
 #pragma once
 
-#include <atomic>
 #include <memory>
 #include <string>
 #include <vector>
@@ -46,13 +45,9 @@ struct Simulation::Impl {
   /// What calls out to functions of a program's own at present.
   enum class Busy { no, between_steps, yes };
   Busy busy = Busy::no;
-  /// Const members, on any thread, that call out to such functions at present.
-  std::atomic<int> asking{0};
   /// @param name  of the member that would change something @param most  the busiest in which it may
-  /// @throws std::logic_error where the simulation is busier, or a const member asks
+  /// @throws std::logic_error where the simulation is busier, or a const member asks such functions on this thread
   void refuse_while_busy(const std::string& name, Busy most = Busy::no) const;
-  /// What does not change anything: only where the simulation is busy. @throws std::logic_error
-  void refuse_half_a_step(const std::string& name) const;
   /// While it lives, what a program's own functions call is refused where it would change something.
   class Guard {
    public:
@@ -66,16 +61,20 @@ struct Simulation::Impl {
     Impl& inside_;
     Busy before_;
   };
-  /// The same around what a const member asks of such functions; several threads may.
+  /// The same around what a const member asks of such functions. Several threads may: each knows what it asks itself.
   class Asking {
    public:
-    explicit Asking(Impl& inside) : inside_(inside) { ++inside_.asking; }
-    ~Asking() { --inside_.asking; }
+    explicit Asking(const Impl& inside) : inside_(inside), outer_(innermost) { innermost = this; }
+    ~Asking() { innermost = outer_; }
     Asking(const Asking&) = delete;
     Asking& operator=(const Asking&) = delete;
+    /// Whether this thread asks functions for a const member of that simulation.
+    static bool is_going_on(const Impl& inside);
 
    private:
-    Impl& inside_;
+    static thread_local const Asking* innermost;
+    const Impl& inside_;
+    const Asking* outer_;
   };
 
   /// Block of a region. @throws std::invalid_argument where it has none

@@ -133,7 +133,7 @@ void Simulation::Impl::load(const State::Contents& saved) {
 }
 
 State Simulation::save_state() const {
-  inside().refuse_half_a_step("save_state");
+  inside().refuse_while_busy("save_state");
   const Impl::Asking asking(inside());
   return inside().save();
 }
@@ -151,7 +151,7 @@ void Simulation::reset() {
 }
 
 void Simulation::save(std::ostream& out) const {
-  inside().refuse_half_a_step("save");
+  inside().refuse_while_busy("save");
   const Impl::Asking asking(inside());
   Archive contents;
   inside().archive(contents);

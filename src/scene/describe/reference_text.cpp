@@ -9,7 +9,8 @@ const std::string_view kReferenceIntroduction = R"(# Scenes
 A scene is a TOML file that describes an experiment: a body, its material, its supports, the tools that press it, and
 the output. Every key is checked. An unknown key is an error that names the line and the nearest valid key. A value of
 the wrong type, a number out of range, a missing key and contradictory keys are errors too. `glisson check SCENE`
-reports them all without running the scene.
+reports them all without running the scene. Its exit status is 0 where the scene can be run, 2 where it cannot, 3 where its numbers end a run early,
+and 4 where ten seconds were not enough to look at every variant.
 
 **Units.** Values are in SI unless their key says otherwise: the unit ends the key's name (`density_kg_m3`,
 `depth_mm`). Ranges and defaults below are in that unit; `-` is a pure number.
