@@ -8,7 +8,7 @@ import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-LIBRARIES = ("glisson", "glisson_scene", "glisson_io", "glisson_fit", "glisson_report", "glisson_fit_files")
+LIBRARIES = ("glisson", "glisson_mesher", "glisson_scene", "glisson_io", "glisson_fit", "glisson_report", "glisson_fit_files")
 PROJECT = """
 cmake_minimum_required(VERSION 3.25)
 project(Small LANGUAGES CXX)
@@ -18,6 +18,8 @@ if(REUSE)
   glisson_reuse_libraries("${REUSE}")
 endif()
 if(NOT GLISSON_REUSED)
+  add_library(room_base INTERFACE)
+  set_property(GLOBAL PROPERTY glisson_rooms base)
   foreach(name %s)
     add_library(${name} STATIC ${name}.cpp)
     target_link_libraries(${name} PUBLIC ${before})
@@ -26,7 +28,7 @@ if(NOT GLISSON_REUSED)
   glisson_offer_libraries()
 endif()
 add_executable(answer main.cpp)
-target_link_libraries(answer PRIVATE glisson_fit_files)
+target_link_libraries(answer PRIVATE glisson_fit_files room_base)
 """ % (ROOT, " ".join(LIBRARIES))
 
 
