@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
-#include <tuple>
+#include <utility>
 
 namespace glisson::heat {
 namespace {
@@ -25,62 +25,99 @@ std::pair<std::array<Vec3d, 4>, double> gradients(const TetMesh& mesh, const Tet
 
 HeatBody::HeatBody(const TetMesh& mesh, const std::map<int, ThermalTissue>& tissues) {
   for (const auto& [region, tissue] : tissues) {
-    numbers_[region] = static_cast<std::uint32_t>(tissues_.size());
-    tissues_.push_back(tissue);
+    numbers_[region] = static_cast<std::uint32_t>(curves_.size());
+    curves_.emplace_back(tissue);
   }
-  std::vector<std::tuple<std::uint32_t, std::uint32_t, double>> volumes;
+  std::vector<std::uint32_t> tissue_of(mesh.tets.size());
   for (std::size_t k = 0; k < mesh.tets.size(); ++k) {
-    const Tet& t = mesh.tets[k];
     const auto number = numbers_.find(mesh.region_of(k));
     if (number == numbers_.end()) {
       throw std::invalid_argument("heat: region " + std::to_string(mesh.region_of(k)) +
                                   " of the mesh has no thermal tissue");
     }
-    const auto [g, six_volume] = gradients(mesh, t);
-    for (const std::uint32_t v : t) volumes.emplace_back(v, number->second, six_volume / 24.0);
-    for (const auto& [a, b] : kEdges) {
-      const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
-      conductances_.push_back(
-          {std::min(t[i], t[j]), std::max(t[i], t[j]), number->second, -dot(g[i], g[j]) / (6.0 * six_volume)});
-    }
+    tissue_of[k] = number->second;
   }
-  const auto by_vertices = [](const Conductance& c) { return std::tuple(c.i, c.j, c.tissue); };
-  std::stable_sort(conductances_.begin(), conductances_.end(),
-                   [&](const auto& a, const auto& b) { return by_vertices(a) < by_vertices(b); });
-  std::size_t last = 0;
-  for (std::size_t k = 1; k < conductances_.size(); ++k) {
-    if (by_vertices(conductances_[k]) == by_vertices(conductances_[last])) {
-      conductances_[last].w += conductances_[k].w;
-    } else {
-      conductances_[++last] = conductances_[k];
-    }
-  }
-  if (!conductances_.empty()) conductances_.resize(last + 1);
-  std::stable_sort(volumes.begin(), volumes.end(), [](const auto& a, const auto& b) {
-    return std::tie(std::get<0>(a), std::get<1>(a)) < std::tie(std::get<0>(b), std::get<1>(b));
-  });
-  begin_.assign(mesh.vertices.size() + 1, 0);
-  std::uint32_t of = 0;
-  for (const auto& [vertex, number, part] : volumes) {
-    if (parts_.empty() || of != vertex || parts_.back().tissue != number)
-      parts_.push_back({number, 0.0}), ++begin_[vertex + 1];
-    parts_.back().volume += part;
-    of = vertex;
-  }
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) begin_[v + 1] += begin_[v];
+  find_parts(mesh, tissue_of);
+  find_links(mesh, tissue_of);
 }
 
-double HeatBody::volume(std::size_t vertex) const {
-  double sum = 0.0;
-  for (const Part& p : parts(vertex)) sum += p.volume;
-  return sum;
+void HeatBody::find_parts(const TetMesh& mesh, const std::vector<std::uint32_t>& tissue_of) {
+  const std::size_t n = mesh.vertices.size();
+  std::vector<std::vector<Part>> parts(n);
+  volume_.assign(n, 0.0);
+  for (std::size_t k = 0; k < mesh.tets.size(); ++k) {
+    const double share = gradients(mesh, mesh.tets[k]).second / 24.0;
+    for (const std::uint32_t v : mesh.tets[k]) {
+      auto at = std::find_if(parts[v].begin(), parts[v].end(), [&](const Part& p) { return p.tissue == tissue_of[k]; });
+      if (at == parts[v].end()) at = parts[v].insert(at, {tissue_of[k], 0.0});
+      at->volume += share, volume_[v] += share;
+    }
+  }
+  begin_.push_back(0);
+  for (std::vector<Part>& of : parts) {
+    if (of.empty()) of.push_back({});
+    std::sort(of.begin(), of.end(), [](const Part& a, const Part& b) { return a.tissue < b.tissue; });
+    vertex_of_.insert(vertex_of_.end(), of.size(), static_cast<std::uint32_t>(begin_.size() - 1));
+    parts_.insert(parts_.end(), of.begin(), of.end());
+    begin_.push_back(parts_.size());
+  }
+}
+
+std::uint32_t HeatBody::part_of(std::uint32_t vertex, std::uint32_t tissue) const {
+  std::size_t p = begin_[vertex];
+  while (parts_[p].tissue != tissue) ++p;
+  return static_cast<std::uint32_t>(p);
+}
+
+void HeatBody::find_links(const TetMesh& mesh, const std::vector<std::uint32_t>& tissue_of) {
+  // pairs of parts by the lower one, with the sum of their tets' w
+  std::vector<std::vector<std::pair<std::uint32_t, double>>> pairs(parts_.size());
+  for (std::size_t k = 0; k < mesh.tets.size(); ++k) {
+    const Tet& t = mesh.tets[k];
+    const auto [g, six_volume] = gradients(mesh, t);
+    std::array<std::uint32_t, 4> part;
+    for (std::size_t c = 0; c < 4; ++c) part[c] = part_of(t[c], tissue_of[k]);
+    for (const auto& [i, j] : kEdges) {
+      const double w = -dot(g[static_cast<std::size_t>(i)], g[static_cast<std::size_t>(j)]) / (6.0 * six_volume);
+      const auto [low, high] = std::minmax(part[static_cast<std::size_t>(i)], part[static_cast<std::size_t>(j)]);
+      const auto at =
+          std::find_if(pairs[low].begin(), pairs[low].end(), [to = high](const auto& x) { return x.first == to; });
+      if (at == pairs[low].end())
+        pairs[low].emplace_back(high, w);
+      else
+        at->second += w;
+    }
+  }
+  const std::size_t n = parts_.size();
+  std::vector<std::uint32_t> next(n, 0), next_negative(n, 0);
+  for (std::uint32_t p = 0; p < n; ++p) {
+    std::sort(pairs[p].begin(), pairs[p].end());
+    for (const auto& [q, w] : pairs[p]) {
+      for (const std::uint32_t end : {p, q}) ++(w < 0.0 ? next_negative : next)[end];
+    }
+  }
+  links_.begin.push_back(0);
+  for (std::size_t p = 0; p < n; ++p) {
+    links_.negative.push_back(links_.begin[p] + next[p]);
+    links_.begin.push_back(links_.negative[p] + next_negative[p]);
+    next[p] = links_.begin[p], next_negative[p] = links_.negative[p];
+  }
+  links_.to.resize(links_.begin[n]), links_.w.resize(links_.begin[n]);
+  for (std::uint32_t p = 0; p < n; ++p) {
+    for (const auto& [q, w] : pairs[p]) {
+      const std::uint32_t pq = (w < 0.0 ? next_negative : next)[p]++, qp = (w < 0.0 ? next_negative : next)[q]++;
+      links_.to[pq] = q, links_.to[qp] = p;
+      links_.w[pq] = links_.w[qp] = w;
+      if (w < 0.0) negative_.push_back({p, q, pq, qp});
+    }
+  }
 }
 
 VertexState HeatBody::state(std::size_t vertex, double temperature) const {
   VertexState sum;
   double volume = 0.0;
   for (const Part& p : parts(vertex)) {
-    const ThermalState s = thermal_state(tissues_[p.tissue], temperature);
+    const ThermalState s = curves_[p.tissue].at(temperature);
     sum.heat += p.volume * s.heat, sum.capacity += p.volume * s.capacity, sum.conductivity += p.volume * s.conductivity;
     volume += p.volume;
   }
@@ -90,6 +127,10 @@ VertexState HeatBody::state(std::size_t vertex, double temperature) const {
 
 // Heat is piecewise linear in temperature, with two corners a tissue: from corner to corner until it is met.
 double HeatBody::temperature_of(std::size_t vertex, double heat, double near) const {
+  if (parts(vertex).size() == 1) {
+    const Part& only = parts(vertex).front();
+    return curves_[only.tissue].temperature_of(heat / only.volume);
+  }
   double t = near;
   const VertexState here = state(vertex, t);
   double left = heat - here.heat;
@@ -98,7 +139,7 @@ double HeatBody::temperature_of(std::size_t vertex, double heat, double near) co
   while (true) {
     double corner = way * INFINITY;
     for (const Part& p : parts(vertex)) {
-      for (const double c : {tissues_[p.tissue].freezing_begins, tissues_[p.tissue].freezing_ends}) {
+      for (const double c : {curves_[p.tissue].begins, curves_[p.tissue].ends}) {
         if (way * (c - t) > 0.0 && way * (c - corner) < 0.0) corner = c;
       }
     }

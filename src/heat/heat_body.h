@@ -8,6 +8,7 @@
 
 #include "glisson/heat/thermal_tissue.h"
 #include "glisson/mesh.h"
+#include "heat/thermal_curve.h"
 
 namespace glisson::heat {
 
@@ -17,10 +18,18 @@ struct Part {
   double volume = 0.0;  ///< [m³]
 };
 
-/// Two vertices between which one tissue conducts: (Θ_j − Θ_i) w flows to i.
-struct Conductance {
-  std::uint32_t i = 0, j = 0, tissue = 0;
-  double w = 0.0;  ///< [m]; below 0 between obtuse tets
+/// What one tissue conducts between a part of a vertex and those beside it: (Θ_to − Θ_p) w flows to the part. Rows of a symmetric matrix,
+/// both halves, so that each row is summed by itself in a fixed order. In a row come those with w ≥ 0 first.
+struct Links {
+  std::vector<std::uint32_t> begin, negative;  ///< of each part's row, and of w below 0 in it
+  std::vector<std::uint32_t> to;               ///< part
+  std::vector<double> w;                       ///< [m]; below 0 between obtuse tets
+};
+
+/// A pair of parts with w below 0, and its two places in the rows.
+struct NegativeLink {
+  std::uint32_t a = 0, b = 0;  ///< parts
+  std::uint32_t at_ab = 0, at_ba = 0;
 };
 
 /// Of all parts of a vertex at one temperature; conduction is their mean by volume.
@@ -39,22 +48,34 @@ class HeatBody {
   std::span<const Part> parts(std::size_t vertex) const {
     return {parts_.data() + begin_[vertex], parts_.data() + begin_[vertex + 1]};
   }
-  std::span<const Conductance> conductances() const { return conductances_; }
-  const ThermalTissue& tissue(std::uint32_t number) const { return tissues_[number]; }
+  /// Number of the first part of a vertex; each vertex has one or more, so that with one tissue parts are numbered as vertices.
+  std::size_t first_part(std::size_t vertex) const { return begin_[vertex]; }
+  std::size_t part_count() const { return parts_.size(); }
+  std::uint32_t vertex_of(std::size_t part) const { return vertex_of_[part]; }
+  const Links& links() const { return links_; }
+  std::span<const NegativeLink> negative_links() const { return negative_; }
+  const ThermalCurve& curve(std::uint32_t number) const { return curves_[number]; }
   std::uint32_t number_of(int region) const { return numbers_.at(region); }
-  std::size_t tissues() const { return tissues_.size(); }
-  double volume(std::size_t vertex) const;
+  std::size_t tissues() const { return curves_.size(); }
+  double volume(std::size_t vertex) const { return volume_[vertex]; }
 
   VertexState state(std::size_t vertex, double temperature) const;
   /// The temperature at which a vertex contains a heat; not finite where that is not. @param near  where the search begins [°C]
   double temperature_of(std::size_t vertex, double heat, double near) const;
 
  private:
-  std::vector<ThermalTissue> tissues_;
+  void find_parts(const TetMesh& mesh, const std::vector<std::uint32_t>& tissue_of);
+  void find_links(const TetMesh& mesh, const std::vector<std::uint32_t>& tissue_of);
+  std::uint32_t part_of(std::uint32_t vertex, std::uint32_t tissue) const;
+
+  std::vector<ThermalCurve> curves_;
   std::map<int, std::uint32_t> numbers_;
   std::vector<std::size_t> begin_;
   std::vector<Part> parts_;
-  std::vector<Conductance> conductances_;
+  std::vector<std::uint32_t> vertex_of_;
+  std::vector<double> volume_;
+  Links links_;
+  std::vector<NegativeLink> negative_;
 };
 
 }  // namespace glisson::heat

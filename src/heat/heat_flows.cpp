@@ -2,39 +2,59 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace glisson::heat {
 namespace {
 
-constexpr double kSame = 1e-9;  // of shares that a limiter leaves
+constexpr double kSame = 1e-9;    // of shares that a limiter leaves
+constexpr double kMoves = 1e-11;  // of a temperature, by one flow too large [K]
 
 }  // namespace
 
-FlowFinder::FlowFinder(const HeatBody& body) : body_(&body), flow_(body.conductances().size()) {
-  const auto all = body.conductances();
-  for (std::uint32_t e = 0; e < all.size(); ++e) {
-    if (all[e].w < 0.0) negative_.push_back(e);
-    left_.push_back(all[e].w);
+FlowFinder::FlowFinder(const HeatBody& body, Blocks& blocks)
+    : body_(&body), blocks_(&blocks), states_(body.size()), conducted_(body.part_count(), 0.0), left_(body.links().w),
+      positive_sum_(body.part_count(), 0.0), left_sum_(body.part_count(), 0.0),
+      shares_(body.negative_links().size(), 1.0), rise_(body.size(), 1.0), fall_(body.size(), 1.0) {
+  if (body.tissues() > 1) ratio_.assign(body.part_count(), 1.0);
+  const Links& links = body.links();
+  for (std::size_t p = 0; p < body.part_count(); ++p) {
+    for (std::uint32_t k = links.begin[p]; k < links.negative[p]; ++k) positive_sum_[p] += left_[k];
+    left_sum_[p] = positive_sum_[p];
+    for (std::uint32_t k = links.negative[p]; k < links.begin[p + 1]; ++k) left_sum_[p] += left_[k];
   }
-  conducted_.assign(body.tissues(), std::vector<double>(body.size(), 0.0));
 }
 
-void FlowFinder::find(std::span<const double> temperature, std::span<const SurfaceHeat> surfaces, Limiter limiter,
-                      double share, Flows& flows) {
+void FlowFinder::set_temperature(std::span<const double> temperature, std::span<const SurfaceHeat> surfaces,
+                                 Flows& flows) {
   const std::size_t n = body_->size();
-  for (auto* of : {&flows.conduction, &flows.blood, &flows.metabolism, &flows.surface, &flows.loss}) of->assign(n, 0.0);
-  for (std::size_t i = 0; i < n; ++i) {
-    for (const Part& p : body_->parts(i)) {
-      const ThermalTissue& t = body_->tissue(p.tissue);
-      const ThermalState s = thermal_state(t, temperature[i]);
-      conducted_[p.tissue][i] = s.conducted;
-      const double blood = t.perfusion * t.blood_heat_capacity * p.volume;
-      flows.blood[i] += s.liquid * blood * (t.blood_temperature - temperature[i]);
-      flows.metabolism[i] += s.liquid * t.metabolic_heat * p.volume;
-      flows.loss[i] +=
-          s.liquid * blood - s.melting * (blood * (t.blood_temperature - temperature[i]) + t.metabolic_heat * p.volume);
+  for (auto* of : {&flows.conduction, &flows.blood, &flows.metabolism, &flows.loss}) of->resize(n);
+  flows.surface.assign(n, 0.0);
+  blocks_->run([&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      VertexState sum;
+      double blood = 0.0, metabolism = 0.0, loss = 0.0;
+      const std::size_t first = body_->first_part(i);
+      const std::span<const Part> parts = body_->parts(i);
+      for (std::size_t k = 0; k < parts.size(); ++k) {
+        const double volume = parts[k].volume;
+        const ThermalCurve& curve = body_->curve(parts[k].tissue);
+        const ThermalState s = curve.at(temperature[i]);
+        conducted_[first + k] = s.conducted;
+        if (!ratio_.empty()) ratio_[first + k] = s.conductivity;
+        sum.heat += volume * s.heat, sum.capacity += volume * s.capacity, sum.conductivity += volume * s.conductivity;
+        const double warms = curve.blood_heat * (curve.blood_temperature - temperature[i]);
+        blood += s.liquid * volume * warms, metabolism += s.liquid * volume * curve.metabolic_heat;
+        loss += volume * (s.liquid * curve.blood_heat - s.melting * (warms + curve.metabolic_heat));
+      }
+      sum.conductivity = body_->volume(i) > 0.0 ? sum.conductivity / body_->volume(i) : 1.0;
+      if (!ratio_.empty()) {
+        for (std::size_t k = 0; k < parts.size(); ++k) ratio_[first + k] /= sum.conductivity;
+      }
+      states_[i] = sum;
+      flows.blood[i] = blood, flows.metabolism[i] = metabolism, flows.loss[i] = loss;
     }
-  }
+  });
   for (const SurfaceHeat& x : surfaces) {
     for (std::size_t k = 0; k < x.vertices.size(); ++k) {
       const std::uint32_t v = x.vertices[k];
@@ -46,52 +66,94 @@ void FlowFinder::find(std::span<const double> temperature, std::span<const Surfa
       }
     }
   }
-  conduct(limiter, share, flows);
 }
 
-void FlowFinder::conduct(Limiter limiter, double share, Flows& flows) {
-  const auto all = body_->conductances();
-  double whole = 0.0;
-  for (std::size_t e = 0; e < all.size(); ++e) {
-    const std::vector<double>& theta = conducted_[all[e].tissue];
-    flow_[e] = all[e].w * (theta[all[e].j] - theta[all[e].i]);
-    whole += std::abs(flow_[e]);
+double FlowFinder::conduction(std::size_t vertex) const {
+  const Links& links = body_->links();
+  const std::size_t first = body_->first_part(vertex), last = first + body_->parts(vertex).size();
+  double sum = 0.0;
+  for (std::size_t p = first; p < last; ++p) {
+    const double here = conducted_[p];
+    for (std::uint32_t k = links.begin[p]; k < links.begin[p + 1]; ++k)
+      sum += left_[k] * (conducted_[links.to[k]] - here);
   }
-  flows.limited = 0.0;
-  if (!negative_.empty()) limit(limiter, share, flows);
-  if (whole > 0.0) flows.limited /= whole;
-  for (std::size_t e = 0; e < all.size(); ++e) {
-    flows.conduction[all[e].i] += flow_[e], flows.conduction[all[e].j] -= flow_[e];
-  }
+  return sum;
 }
 
-// Flows against the temperature's fall may not exceed, vertex by vertex, those along it: at an extreme these are on one side, so
-// that no flow makes it larger.                                                                            [KuzminShashkovSvyatskiy2009]
-void FlowFinder::limit(Limiter limiter, double share, Flows& flows) {
-  const auto all = body_->conductances();
-  const std::size_t n = body_->size();
-  too_much_ = false;
-  for (auto* of : {&in_least_, &in_most_, &may_least_, &may_most_}) of->assign(n, 0.0);
-  for (std::size_t e = 0; e < all.size(); ++e) {
-    std::vector<double>&most = all[e].w < 0.0 ? in_most_ : may_most_, &least = all[e].w < 0.0 ? in_least_ : may_least_;
-    const double f = flow_[e];
-    most[all[e].i] += std::max(0.0, f), least[all[e].i] += std::min(0.0, f);
-    most[all[e].j] += std::max(0.0, -f), least[all[e].j] += std::min(0.0, -f);
-  }
-  const auto allowed = [](double may, double in) { return std::abs(in) <= std::abs(may) ? 1.0 : may / in; };
-  for (const std::uint32_t e : negative_) {
-    const std::uint32_t up = flow_[e] > 0.0 ? all[e].i : all[e].j, down = flow_[e] > 0.0 ? all[e].j : all[e].i;
-    double passes = std::min(allowed(may_most_[up], in_most_[up]), allowed(may_least_[down], in_least_[down]));
-    const double before = left_[e] / all[e].w;
-    if (limiter == Limiter::keeps) {
-      too_much_ = too_much_ || before > passes + kSame;
-      passes = before;
-    } else if (limiter == Limiter::tightens) {
-      passes = std::min(before, passes < 1.0 ? share * passes : 1.0);
+void FlowFinder::find_allowed() {
+  const Links& links = body_->links();
+  whole_ = blocks_->sums<1>([&](std::size_t begin, std::size_t end) -> std::array<double, 1> {
+    double whole = 0.0;
+    for (std::size_t i = begin; i < end; ++i) {
+      // Sums of flows and of their sizes: at an extreme both are the same to the last bit, so that what is allowed is 0 there.
+      double sum = 0.0, size = 0.0, against = 0.0, against_size = 0.0;
+      const std::size_t first = body_->first_part(i), last = first + body_->parts(i).size();
+      for (std::size_t p = first; p < last; ++p) {
+        const double here = conducted_[p];
+        for (std::uint32_t k = links.begin[p]; k < links.negative[p]; ++k) {
+          const double flow = links.w[k] * (conducted_[links.to[k]] - here);
+          sum += flow, size += std::abs(flow);
+        }
+        for (std::uint32_t k = links.negative[p]; k < links.begin[p + 1]; ++k) {
+          const double flow = links.w[k] * (conducted_[links.to[k]] - here);
+          against += flow, against_size += std::abs(flow);
+        }
+      }
+      const double in = size + sum, out = size - sum, against_in = against_size + against,
+                   against_out = against_size - against;  // twice
+      constexpr double kAll = std::numeric_limits<double>::infinity();
+      rise_[i] = against_in > 0.0 ? in / against_in : kAll;
+      fall_[i] = against_out > 0.0 ? out / against_out : kAll;
+      whole += size + against_size;
     }
-    flows.limited += (1.0 - passes) * std::abs(flow_[e]);
-    flow_[e] *= passes, left_[e] = passes * all[e].w;
-  }
+    return {0.5 * whole};
+  })[0];
+}
+
+// leave(share before, share allowed, flow, a, b) returns the share to leave.
+template <class Leave>
+bool FlowFinder::set_left(double& limited, const Leave& leave) {
+  const std::span<const NegativeLink> all = body_->negative_links();
+  const Links& links = body_->links();
+  const auto [taken, changed] = blocks_->sums<2>(all.size(), [&](std::size_t begin, std::size_t end) {
+    std::array<double, 2> sums{};
+    for (std::size_t e = begin; e < end; ++e) {
+      const NegativeLink& x = all[e];
+      const std::uint32_t a = body_->vertex_of(x.a), b = body_->vertex_of(x.b);
+      const double w = links.w[x.at_ab], flow = w * (conducted_[x.b] - conducted_[x.a]);  // into a
+      const double allowed = flow > 0.0 ? std::min(rise_[a], fall_[b]) : std::min(rise_[b], fall_[a]);
+      const double before = shares_[e], share = leave(before, allowed, flow, a, b);
+      if (share != before) shares_[e] = share, left_[x.at_ab] = left_[x.at_ba] = share * w, sums[1] += 1.0;
+      sums[0] += (1.0 - share) * std::abs(flow);
+    }
+    return sums;
+  });
+  limited = whole_ > 0.0 ? taken / whole_ : 0.0;
+  if (changed == 0.0) return false;
+  blocks_->run(body_->part_count(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      double sum = positive_sum_[p];
+      for (std::uint32_t k = links.negative[p]; k < links.begin[p + 1]; ++k) sum += left_[k];
+      left_sum_[p] = sum;
+    }
+  });
+  return true;
+}
+
+void FlowFinder::limit(double share, double& limited) {
+  find_allowed();
+  set_left(limited, [share](double, double allowed, double, std::uint32_t, std::uint32_t) {
+    return std::min(1.0, share * allowed);
+  });
+}
+
+bool FlowFinder::tighten(double share, double h, double& limited) {
+  find_allowed();
+  return set_left(limited, [&](double before, double allowed, double flow, std::uint32_t a, std::uint32_t b) {
+    const bool moves =
+        h * (before - allowed) * std::abs(flow) > kMoves * std::min(states_[a].capacity, states_[b].capacity);
+    return before > allowed + kSame && moves ? share * allowed : before;
+  });
 }
 
 }  // namespace glisson::heat

@@ -1,9 +1,14 @@
-// heat_flows.h — what flows into each vertex at given temperatures.
+// heat_flows.h — what flows into each vertex at given temperatures, and what the limiter leaves of conductances below 0.
+//
+// Flows against the fall of temperature, over conductances below 0, may not exceed those along it, vertex by vertex: at an extreme these
+// are all on one side, so that no flow makes it larger [KuzminShashkovSvyatskiy2009]. What is left of each stays as it is until limit()
+// is called again: with shares that stay, the flows are a symmetric operator on ∫ k dT.
 #pragma once
 
 #include <span>
 #include <vector>
 
+#include "heat/blocks.h"
 #include "heat/heat_body.h"
 
 namespace glisson::heat {
@@ -26,31 +31,47 @@ struct Flows {
   double sum(std::size_t i) const { return conduction[i] + blood[i] + metabolism[i] + surface[i]; }
 };
 
-/// What a limiter leaves of a flow: what these temperatures allow; what it left before, so that iterations come to rest; a share of the
-/// less of the two where these temperatures do not allow all.
-enum class Limiter { follows, keeps, tightens };
-
 class FlowFinder {
  public:
-  explicit FlowFinder(const HeatBody& body);
+  FlowFinder(const HeatBody& body, Blocks& blocks);
 
-  void find(std::span<const double> temperature, std::span<const SurfaceHeat> surfaces, Limiter limiter, double share,
-            Flows& flows);
-  /// What the limiter left of each conductance, at the temperatures of the last find() [m].
-  std::span<const double> conductances() const { return left_; }
-  /// Whether shares that were kept leave more than these temperatures allow.
-  bool keeps_too_much() const { return too_much_; }
+  /// States of the vertices at these temperatures, and their flows but for conduction.
+  void set_temperature(std::span<const double> temperature, std::span<const SurfaceHeat> surfaces, Flows& flows);
+  const std::vector<VertexState>& states() const { return states_; }
+  /// ∫ k dT of each part [W/m].
+  std::span<const double> conducted() const { return conducted_; }
+  /// Of each part its k over the mean of its vertex; empty with one tissue, where it is 1.
+  std::span<const double> ratio() const { return ratio_; }
+
+  /// Conduction into a vertex [W].
+  double conduction(std::size_t vertex) const;
+
+  bool has_negative() const { return !body_->negative_links().empty(); }
+  /// Leaves of each conductance below 0 a share of what these temperatures allow, all of it where that is enough.
+  /// @param share  at most 1 @param limited  as in Flows
+  void limit(double share, double& limited);
+  /// Takes from those that leave more than these temperatures allow, where that would move a temperature. @param h  length of the step [s]
+  /// @return whether it did
+  bool tighten(double share, double h, double& limited);
+
+  /// What is left of each link [m], as body.links().w, and the sum of each row.
+  std::span<const double> left() const { return left_; }
+  std::span<const double> left_sum() const { return left_sum_; }
 
  private:
-  void conduct(Limiter limiter, double share, Flows& flows);
-  void limit(Limiter limiter, double share, Flows& flows);
+  void find_allowed();
+  template <class Leave>
+  bool set_left(double& limited, const Leave& leave);
 
   const HeatBody* body_;
-  bool too_much_ = false;
-  std::vector<std::uint32_t> negative_;                            // conductances below 0
-  std::vector<double> flow_, left_;                                // of each conductance: heat into i [W], itself [m]
-  std::vector<std::vector<double>> conducted_;                     // ∫ k dT, by tissue and vertex
-  std::vector<double> in_least_, in_most_, may_least_, may_most_;  // of the limiter
+  Blocks* blocks_;
+  std::vector<VertexState> states_;
+  std::vector<double> conducted_, ratio_;
+  std::vector<double> left_, positive_sum_, left_sum_;
+  std::vector<double> shares_;  // left of each negative link
+  // Of each vertex: what flows along the fall of temperature, in and out, over what flows against it.
+  std::vector<double> rise_, fall_;
+  double whole_ = 0.0;
 };
 
 }  // namespace glisson::heat

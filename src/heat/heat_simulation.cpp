@@ -73,7 +73,8 @@ double share_below(std::array<double, 4> t, double level) {
 class HeatSimulation::Impl {
  public:
   Impl(TetMesh given, const std::map<int, ThermalTissue>& tissues, const HeatOptions& options)
-      : mesh_(checked(std::move(given))), options_(checked(options)), body_(mesh_, checked(tissues)), stepper_(body_),
+      : mesh_(checked(std::move(given))), options_(checked(options)), body_(mesh_, checked(tissues)),
+        stepper_(body_, options_.threads > 0 ? options_.threads : heat::threads_for(body_.size())),
         held_(mesh_.vertices.size(), 0) {
     now_.temperature.assign(held_.size(), options.temperature);
     for (std::size_t i = 0; i < held_.size(); ++i) now_.heat.push_back(body_.state(i, options.temperature).heat);
@@ -196,7 +197,18 @@ std::optional<HeatSimulation::Impl::Trial> HeatSimulation::Impl::make(double h) 
     const double power = value_of(x.power, end, "power of a source");
     for (const auto& [v, share] : x.shares) trial.sources[v] += share * power;
   }
-  trial.iterations = stepper_.step({h, now_.heat, trial.sources, held_, surfaces}, trial.temperature, trial.flows);
+  const HeatStepper::Input in{h, now_.heat, trial.sources, held_, surfaces};
+  const std::vector<double> here = trial.temperature;
+  if (!now_.rate.empty()) {
+    for (std::size_t i = 0; i < here.size(); ++i) {
+      if (held_[i] == 0) trial.temperature[i] += h * now_.rate[i];
+    }
+  }
+  trial.iterations = stepper_.step(in, trial.temperature, trial.flows);
+  if (trial.iterations < 0 && !now_.rate.empty()) {
+    trial.temperature = here;
+    trial.iterations = stepper_.step(in, trial.temperature, trial.flows);
+  }
   if (trial.iterations < 0) return std::nullopt;
   if (now_.rate.empty()) return trial;
   // backward Euler errs by h²/2 T″, the straight line from the step before by h (h + h₀)/2 T″ to the other side
@@ -221,7 +233,7 @@ void HeatSimulation::Impl::accept(double h, Trial& trial) {
       now_.ledger.held += now_.heat[i] - before - in;
     } else {
       now_.heat[i] = before + in;
-      if (body_.parts(i).empty())
+      if (body_.volume(i) == 0.0)
         now = now_.temperature[i];
       else
         now = body_.temperature_of(i, now_.heat[i], now);
@@ -337,12 +349,14 @@ void HeatSimulation::load_state(HeatState state) {
   impl_->now_ = std::move(state);
 }
 std::size_t HeatSimulation::steps() const { return impl_->now_.steps; }
+const HeatWork& HeatSimulation::work() const { return impl_->stepper_.work(); }
+void HeatSimulation::count_time() { impl_->stepper_.count_time(); }
 
 double HeatSimulation::frozen_volume() const {
   double sum = 0.0;
   for (std::size_t i = 0; i < impl_->now_.temperature.size(); ++i) {
     for (const heat::Part& p : impl_->body_.parts(i)) {
-      sum += p.volume * (1.0 - thermal_state(impl_->body_.tissue(p.tissue), impl_->now_.temperature[i]).liquid);
+      sum += p.volume * (1.0 - impl_->body_.curve(p.tissue).at(impl_->now_.temperature[i]).liquid);
     }
   }
   return sum;

@@ -3,113 +3,151 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <ctime>
 #include <limits>
 
 namespace glisson::heat {
 namespace {
 
 constexpr int kMostIterations = 60;
-constexpr int kFreeIterations = 4;                            // after which the limiter keeps its shares
-constexpr std::array<double, 4> kLeaves{0.9, 0.5, 0.1, 0.0};  // of what is allowed, round by round
-constexpr double kExact = 1e-12;                              // of a temperature beside its neighbours' [K]
+constexpr int kFreeIterations = 3;  // in which the limiter follows the temperatures; then it only takes more
+constexpr double kFollows = 0.9;    // of what is allowed
+constexpr std::array<double, 7> kLeaves{0.9, 0.9, 0.5, 0.5, 0.1, 0.1, 0.0};  // of what is allowed, round by round
+constexpr double kNear = 1e-3;    // where it is looked whether the limiter leaves too much [K]
+constexpr double kExact = 1e-12;  // of a temperature beside its neighbours' [K]
+constexpr double kExactAlone =
+    1e-10;  // of a temperature by the heat of its vertex alone: such a step is exact, too [K]
 constexpr double kLeastCapacity = 0.2;  // of a vertex, where blood that comes with thaw feeds itself
-constexpr double kLinear = 1e-6;        // of a linear solve, relative; Newton's method goes on from there
+constexpr int kDampedFrom = 6;          // iterations
+// Of a linear solve, relative: as the square of what the last iteration gained.
+constexpr double kLoosest = 0.1, kTightest = 1e-6;
 
-int place_of(const Eigen::SparseMatrix<double>& m, int row, int column) {
-  const int* begin = m.innerIndexPtr() + m.outerIndexPtr()[column];
-  const int* end = m.innerIndexPtr() + m.outerIndexPtr()[column + 1];
-  return static_cast<int>(std::lower_bound(begin, end, row) - m.innerIndexPtr());
-}
+/// Adds the CPU time of its life to a part of the work.
+class Timed {
+ public:
+  Timed(bool counts, double& seconds) : seconds_(counts ? &seconds : nullptr), start_(counts ? std::clock() : 0) {}
+  ~Timed() {
+    if (seconds_ != nullptr) *seconds_ += static_cast<double>(std::clock() - start_) / CLOCKS_PER_SEC;
+  }
+  Timed(const Timed&) = delete;
+  Timed& operator=(const Timed&) = delete;
+
+ private:
+  double* seconds_;
+  std::clock_t start_;
+};
 
 }  // namespace
 
-HeatStepper::HeatStepper(const HeatBody& body) : body_(&body), finder_(body), states_(body.size()) {
-  const int n = static_cast<int>(body.size());
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int i = 0; i < n; ++i) entries.emplace_back(i, i, 1.0);
-  for (const Conductance& c : body.conductances()) {
-    const int i = static_cast<int>(c.i), j = static_cast<int>(c.j);
-    entries.emplace_back(i, j, 1.0), entries.emplace_back(j, i, 1.0);
+HeatStepper::HeatStepper(const HeatBody& body, int threads)
+    : body_(&body), blocks_(body.size(), threads), finder_(body, blocks_), solver_(body, blocks_),
+      fixed_(body.size(), 0), links_(body.size(), 0.0), residual_(body.size()), diagonal_(body.size()) {
+  const Links& links = body.links();
+  for (std::size_t p = 0; p < body.part_count(); ++p) {
+    for (std::uint32_t k = links.begin[p]; k < links.begin[p + 1]; ++k)
+      links_[body.vertex_of(p)] += std::abs(links.w[k]);
   }
-  matrix_.resize(n, n);
-  matrix_.setFromTriplets(entries.begin(), entries.end());
-  for (int i = 0; i < n; ++i) diagonal_.push_back(place_of(matrix_, i, i));
-  for (const Conductance& c : body.conductances()) {
-    const int i = static_cast<int>(c.i), j = static_cast<int>(c.j);
-    places_.push_back({place_of(matrix_, i, j), place_of(matrix_, j, i)});
-  }
-  links_.assign(body.size(), 0.0);
-  for (const Conductance& c : body.conductances()) links_[c.i] += std::abs(c.w), links_[c.j] += std::abs(c.w);
-  symmetric_.setTolerance(kLinear), general_.setTolerance(kLinear);
 }
 
-Eigen::VectorXd HeatStepper::solve(const Eigen::VectorXd& residual) {
-  if (body_->tissues() == 1) return symmetric_.compute(matrix_).solve(residual);
-  return general_.compute(matrix_).solve(residual);
-}
-
-// With what the limiter left of conductances below 0, which is found anew each time.
-void HeatStepper::set_matrix(const Input& in, std::span<const double> temperature, const Flows& flows) {
-  double* value = matrix_.valuePtr();
-  std::fill(value, value + matrix_.nonZeros(), 0.0);
-  for (std::size_t i = 0; i < body_->size(); ++i) {
-    const VertexState& s = states_[i];
-    value[diagonal_[i]] =
-        in.held[i] != 0 || s.capacity == 0.0
-            ? 1.0
-            : std::max(s.capacity + in.h * flows.loss[i], kLeastCapacity * s.capacity) / s.conductivity;
-  }
-  const auto all = body_->conductances();
-  for (std::size_t e = 0; e < all.size(); ++e) {
-    const Conductance& c = all[e];
-    const double w = in.h * finder_.conductances()[e];
-    double wi = w, wj = w;
-    if (body_->tissues() > 1) {  // δΘ of this tissue over that of the vertices' means
-      const ThermalTissue& t = body_->tissue(c.tissue);
-      wi *= thermal_state(t, temperature[c.i]).conductivity / states_[c.i].conductivity;
-      wj *= thermal_state(t, temperature[c.j]).conductivity / states_[c.j].conductivity;
+HeatStepper::Distance HeatStepper::find_residual(const Input& in, Flows& flows) {
+  const std::vector<VertexState>& states = finder_.states();
+  const auto [beside, alone] = blocks_.largest<2>([&](std::size_t begin, std::size_t end) {
+    std::array<double, 2> worst{};
+    for (std::size_t i = begin; i < end; ++i) {
+      flows.conduction[i] = finder_.conduction(i);
+      if (fixed_[i] != 0) {
+        residual_[i] = 0.0;
+        continue;
+      }
+      const double r = in.heat[i] + in.h * (flows.sum(i) + in.sources[i]) - states[i].heat, size = std::abs(r);
+      residual_[i] = r;
+      const double by_all = size / (states[i].capacity + in.h * states[i].conductivity * links_[i]),
+                   by_itself = size / states[i].capacity;
+      if (!(by_all <= worst[0])) worst[0] = by_all;  // NaN, too
+      if (!(by_itself <= worst[1])) worst[1] = by_itself;
     }
-    if (in.held[c.i] == 0) value[diagonal_[c.i]] += wi;
-    if (in.held[c.j] == 0) value[diagonal_[c.j]] += wj;
-    if (in.held[c.i] == 0 && in.held[c.j] == 0) value[places_[e][0]] -= wj, value[places_[e][1]] -= wi;
-  }
+    return worst;
+  });
+  return {beside, alone};
+}
+
+void HeatStepper::set_diagonal(const Input& in, const Flows& flows) {
+  const std::span<const double> sum = finder_.left_sum(), ratio = finder_.ratio();
+  blocks_.run([&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const VertexState& s = finder_.states()[i];
+      if (fixed_[i] != 0) {
+        diagonal_[i] = 1.0;
+        continue;
+      }
+      double conducts = 0.0;
+      const std::size_t first = body_->first_part(i), last = first + body_->parts(i).size();
+      for (std::size_t p = first; p < last; ++p) conducts += ratio.empty() ? sum[p] : sum[p] * ratio[p];
+      diagonal_[i] =
+          std::max(s.capacity + in.h * flows.loss[i], kLeastCapacity * s.capacity) / s.conductivity + in.h * conducts;
+    }
+  });
+}
+
+void HeatStepper::change_temperature(double share, std::vector<double>& temperature) {
+  blocks_.run([&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (fixed_[i] != 0 || change_[i] == 0.0) continue;
+      const VertexState& s = finder_.states()[i];
+      temperature[i] =
+          body_->temperature_of(i, s.heat + share * s.capacity * change_[i] / s.conductivity, temperature[i]);
+    }
+  });
 }
 
 int HeatStepper::step(const Input& in, std::vector<double>& temperature, Flows& flows) {
-  const std::size_t n = body_->size();
-  Eigen::VectorXd residual(static_cast<Eigen::Index>(n));
-  Limiter limiter = Limiter::follows;
+  const bool timed = solver_.counts_time;
+  for (std::size_t i = 0; i < body_->size(); ++i) fixed_[i] = in.held[i] != 0 || body_->volume(i) == 0.0 ? 1 : 0;
   std::size_t round = 0;
-  double last = std::numeric_limits<double>::infinity();
+  double last = std::numeric_limits<double>::infinity(), tolerance = kLoosest;
+  ++work_.steps;
   for (int k = 1; k <= kMostIterations; ++k) {
-    finder_.find(temperature, in.surfaces, limiter, kLeaves[std::min(round, kLeaves.size() - 1)], flows);
-    double worst = 0.0;
-    for (std::size_t i = 0; i < n; ++i) {
-      states_[i] = body_->state(i, temperature[i]);
-      double& r = residual[static_cast<Eigen::Index>(i)];
-      r = in.held[i] != 0 || states_[i].capacity == 0.0
-              ? 0.0
-              : in.heat[i] + in.h * (flows.sum(i) + in.sources[i]) - states_[i].heat;
-      const double per_kelvin = states_[i].capacity + in.h * states_[i].conductivity * links_[i];
-      const double off = per_kelvin > 0.0 ? std::abs(r) / per_kelvin : 0.0;
-      if (!(off <= worst)) worst = off;  // NaN, too
+    ++work_.iterations;
+    {
+      const Timed t(timed, work_.state_seconds);
+      finder_.set_temperature(temperature, in.surfaces, flows);
     }
-    if (!std::isfinite(worst)) return -1;
-    limiter = k < kFreeIterations ? Limiter::follows : Limiter::keeps;
-    if (worst < kExact && !finder_.keeps_too_much()) return k;
-    if (k == kFreeIterations || worst < kExact) limiter = Limiter::tightens, round += k == kFreeIterations ? 0 : 1;
-    set_matrix(in, temperature, flows);
-    const Eigen::VectorXd change = solve(residual);
-    const double share = k > kFreeIterations && worst >= last && limiter == Limiter::keeps
-                             ? 0.5
-                             : 1.0;  // to and fro across a corner of H
-    last = worst;
-    for (std::size_t i = 0; i < n; ++i) {
-      if (in.held[i] != 0 || states_[i].capacity == 0.0) continue;
-      const double heat = states_[i].heat +
-                          share * states_[i].capacity * change[static_cast<Eigen::Index>(i)] / states_[i].conductivity;
-      temperature[i] = body_->temperature_of(i, heat, temperature[i]);
+    const bool follows = k <= kFreeIterations;  // leaves what these temperatures allow: nothing to tighten
+    if (follows && finder_.has_negative()) {
+      const Timed t(timed, work_.limiter_seconds);
+      finder_.limit(kFollows, flows.limited);
+      ++work_.limiter_rounds;
     }
+    const auto residual = [&] {
+      const Timed t(timed, work_.residual_seconds);
+      return find_residual(in, flows);
+    };
+    Distance off = residual();
+    if (!std::isfinite(off.beside)) return -1;
+    bool tightened = false;
+    const auto is_exact = [&] { return off.beside < kExact || off.alone < kExactAlone; };
+    if ((off.beside < kNear || is_exact()) && !follows && finder_.has_negative()) {
+      const Timed t(timed, work_.limiter_seconds);
+      ++work_.limiter_rounds;
+      tightened = finder_.tighten(kLeaves[std::min(round, kLeaves.size() - 1)], in.h, flows.limited);
+    }
+    if (tightened) ++round, off = residual();
+    if (is_exact() && !tightened) return k;
+    const double gained = off.beside / last;
+    tolerance = std::isfinite(gained) ? std::clamp(0.9 * gained * gained, kTightest, kLoosest) : kLoosest;
+    tolerance = std::max(tolerance, std::min(kLoosest, 0.1 * kExactAlone / off.alone));
+    {
+      const Timed t(timed, work_.solve_seconds);
+      set_diagonal(in, flows);
+      const HeatMatrix matrix{in.h, diagonal_, finder_.left(), finder_.ratio(), fixed_};
+      work_.linear_iterations += static_cast<std::size_t>(solver_.solve(matrix, residual_, tolerance, change_));
+    }
+    work_.products = solver_.products, work_.product_seconds = solver_.seconds;
+    // to and fro across a corner of H
+    const double share = k > kDampedFrom && off.beside >= last && !tightened ? 0.5 : 1.0;
+    last = off.beside;
+    const Timed t(timed, work_.state_seconds);
+    change_temperature(share, temperature);
   }
   return -1;
 }

@@ -3,20 +3,22 @@
 // Unknown of a linear solve is what the vertices' conducted heat Θ changes by, in which the matrix of one tissue is symmetric:
 //   (C/k + h g/k + h L) δΘ = heat before + h flows − heat,    C = dH/dT · V, g what blood and surface lose per kelvin
 // A vertex then takes the heat C δT, and the temperature that has this heat: it stops at the corners of H(T) by itself.
+// Linear solves are as exact as the iteration is near its end [EisenstatWalker1996].
 #pragma once
 
-#include <Eigen/IterativeLinearSolvers>
-#include <Eigen/SparseCore>
 #include <span>
 #include <vector>
 
+#include "glisson/heat/heat_simulation.h"
 #include "heat/heat_flows.h"
+#include "heat/heat_solve.h"
 
 namespace glisson::heat {
 
 class HeatStepper {
  public:
-  explicit HeatStepper(const HeatBody& body);
+  /// @param threads  1 or more
+  HeatStepper(const HeatBody& body, int threads);
 
   struct Input {
     double h = 0.0;                   ///< [s]
@@ -30,19 +32,28 @@ class HeatStepper {
   /// @return iterations, or −1 where it did not converge
   int step(const Input& in, std::vector<double>& temperature, Flows& flows);
 
+  Blocks& blocks() { return blocks_; }
+  const HeatWork& work() const { return work_; }
+  void count_time() { solver_.counts_time = true; }
+
  private:
-  Eigen::VectorXd solve(const Eigen::VectorXd& residual);
-  void set_matrix(const Input& in, std::span<const double> temperature, const Flows& flows);
+  /// How far the temperatures are from those of the step [K].
+  struct Distance {
+    double beside = 0.0;  ///< beside their neighbours'
+    double alone = 0.0;   ///< by what flows in beside the heat that is there; more than `beside` in long steps
+  };
+  Distance find_residual(const Input& in, Flows& flows);
+  void set_diagonal(const Input& in, const Flows& flows);
+  void change_temperature(double share, std::vector<double>& temperature);
 
   const HeatBody* body_;
+  Blocks blocks_;
   FlowFinder finder_;
-  Eigen::SparseMatrix<double> matrix_;
-  std::vector<std::array<int, 2>> places_;  // of each conductance in the matrix: ij, ji
-  std::vector<int> diagonal_;
-  std::vector<double> links_;  // Σ |w| of the conductances at a vertex [m]
-  Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower | Eigen::Upper> symmetric_;
-  Eigen::BiCGSTAB<Eigen::SparseMatrix<double>> general_;  // where a vertex is of several tissues
-  std::vector<VertexState> states_;
+  HeatSolver solver_;
+  HeatWork work_;
+  std::vector<char> fixed_;    // held, or in no tet
+  std::vector<double> links_;  // Σ |w| at a vertex [m]
+  std::vector<double> residual_, diagonal_, change_;
 };
 
 }  // namespace glisson::heat

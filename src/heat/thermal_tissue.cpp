@@ -1,6 +1,7 @@
 #include "glisson/heat/thermal_tissue.h"
 
 #include "base/text.h"
+#include "heat/thermal_curve.h"
 
 namespace glisson {
 
@@ -11,28 +12,8 @@ Fault ThermalTissue::check() const {
           "freezing_ends"};
 }
 
-ThermalState thermal_state(const ThermalTissue& t, double temperature) {
-  ThermalState s;
-  const double above = temperature - t.freezing_begins;
-  if (above >= 0.0) {
-    s.capacity = t.density * t.specific_heat, s.conductivity = t.conductivity;
-    s.heat = s.capacity * above, s.conducted = t.conductivity * above;
-    return s;
-  }
-  const double range = t.freezing_begins - t.freezing_ends;
-  const double between = t.density * (0.5 * (t.specific_heat + t.frozen_specific_heat) + t.latent_heat / range);
-  if (temperature > t.freezing_ends) {
-    s.liquid = 1.0 + above / range, s.melting = 1.0 / range;
-    s.capacity = between, s.heat = between * above;
-    s.conductivity = t.frozen_conductivity + s.liquid * (t.conductivity - t.frozen_conductivity);
-    s.conducted = 0.5 * (t.conductivity + s.conductivity) * above;
-    return s;
-  }
-  const double below = temperature - t.freezing_ends;
-  s.liquid = 0.0, s.capacity = t.density * t.frozen_specific_heat, s.conductivity = t.frozen_conductivity;
-  s.heat = -between * range + s.capacity * below;
-  s.conducted = -0.5 * (t.conductivity + t.frozen_conductivity) * range + t.frozen_conductivity * below;
-  return s;
+ThermalState thermal_state(const ThermalTissue& tissue, double temperature) {
+  return heat::ThermalCurve(tissue).at(temperature);
 }
 
 }  // namespace glisson

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <random>
 
 #include "glisson/heat/heat_simulation.h"
+#include "support/bodies.h"
 
 namespace glisson {
 namespace {
@@ -71,6 +73,43 @@ TEST(HeatUse, StatesGoBack) {
                 HeatSimulation(rod(3), {{0, ThermalTissue{}}}).load_state(then);
               }),
               ::testing::HasSubstr("of 44 vertices, this mesh has 16"));
+}
+
+// Any number of threads gives the same bytes: bodies of several blocks of vertices with obtuse tets, of one tissue and of two.
+TEST(HeatUse, ThreadsGiveTheSameBytes) {
+  for (const int tissues : {1, 2}) {
+    std::vector<double> first;
+    for (const int threads : {1, 2, 3, 5}) {
+      std::mt19937 random(7);
+      TetMesh mesh = test::jittered_box({14, 15, 16}, 0.003, 0.25, random);
+      std::map<int, ThermalTissue> all{{0, ThermalTissue{.perfusion = 1e-3}}};
+      if (tissues == 2) {
+        all[1] = {.conductivity = 0.2, .freezing_ends = -4.0};
+        for (std::size_t t = 0; t < mesh.tets.size(); ++t) mesh.regions.push_back(t < mesh.tets.size() / 2 ? 0 : 1);
+      }
+      HeatSimulation s(mesh, all, {.threads = threads});
+      s.hold("x_min", [](double) { return -60.0; });
+      s.add_line_source({{0.02, 0.02, 0.01}, {0.02, 0.02, 0.03}, [](double) { return -300.0; }});
+      ASSERT_EQ(s.advance_to(20.0).status, HeatStatus::ok);
+      std::vector<double> end = s.state().temperature;
+      end.push_back(s.ledger().blood), end.push_back(s.state().limited_share);
+      if (first.empty()) first = end;
+      EXPECT_GT(s.mesh().vertices.size(), 3000U);
+      EXPECT_GT(s.frozen_volume(), 0.0);
+      EXPECT_EQ(end, first) << tissues << " tissues, " << threads << " threads";
+    }
+  }
+}
+
+// work() counts what was done, with seconds where it was asked for them.
+TEST(HeatUse, CountsItsWork) {
+  HeatSimulation s(rod(10), {{0, ThermalTissue{}}});
+  s.hold("x_min", [](double) { return -80.0; });
+  ASSERT_EQ(s.advance_to(5.0).status, HeatStatus::ok);
+  EXPECT_GE(s.work().steps, s.steps());
+  EXPECT_GT(s.work().iterations, s.work().steps);
+  EXPECT_GE(s.work().products, s.work().linear_iterations);
+  EXPECT_EQ(s.work().solve_seconds, 0.0);
 }
 
 // Steps end where a function of time says that it has a corner: a pulse of power gives its energy to rounding.

@@ -33,6 +33,7 @@ struct HeatOptions {
   double first_step = 0.01;    ///< of those [s]
   double longest_step = 60.0;  ///< of those [s]
   double tolerance = 0.02;     ///< error of temperature that one step may add, mean square over the volume [K]
+  int threads = 0;             ///< 0: chosen by the size of the body; the result is the same bytes on any number
 
   template <class Take>
   static constexpr auto fields(Take take) {
@@ -44,7 +45,8 @@ struct HeatOptions {
                 field("first_step", &O::first_step, "s", above(0), "the first of these"),
                 field("longest_step", &O::longest_step, "s", above(0), "the longest of these"),
                 field("tolerance", &O::tolerance, "K", above(0),
-                      "error of temperature that one step may add, mean square over the volume"));
+                      "error of temperature that one step may add, mean square over the volume"),
+                no_key("threads", &O::threads, between(0, 1024)));
   }
 };
 
@@ -72,6 +74,17 @@ struct HeatStep {
   HeatStatus status = HeatStatus::ok;
   double step = 0.0;   ///< its length [s]
   int iterations = 0;  ///< of Newton's method
+};
+
+/// What the steps of a simulation have cost so far, those that were not taken included; no part of its state.
+struct HeatWork {
+  std::size_t steps = 0;              ///< tried
+  std::size_t iterations = 0;         ///< of Newton's method
+  std::size_t linear_iterations = 0;  ///< of conjugate gradients
+  std::size_t products = 0;           ///< of the matrix with a vector
+  std::size_t limiter_rounds = 0;
+  // CPU time of all threads where HeatSimulation::count_time() was called [s]; products are part of the solves.
+  double state_seconds = 0.0, limiter_seconds = 0.0, residual_seconds = 0.0, solve_seconds = 0.0, product_seconds = 0.0;
 };
 
 /// All that changes while a simulation runs; a value that may be kept and given back.
@@ -126,6 +139,9 @@ class HeatSimulation {
   double volume_below(double temperature) const;
   HeatLedger ledger() const;
   std::size_t steps() const;
+  const HeatWork& work() const;
+  /// From now on work() has seconds, too: some clock calls an iteration.
+  void count_time();
 
  private:
   class Impl;
