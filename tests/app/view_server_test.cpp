@@ -290,7 +290,7 @@ TEST_F(LiveServer, ClosesOnWhatIsMalformed) {
 // Places for a tool, a hand or a blade that make no sense are counted and told, and the line goes on: the last good one stays.
 TEST_F(LiveServer, CountsPlacesThatMakeNoSense) {
   ViewClient viewer(port(), query());
-  const float nan = std::nanf(""), far = 2.0f * kFarthest;
+  const float nan = std::nanf(""), far = 2.0f * payload_of(CommandKind::place).largest;
   for (const Command& bad :
        {Command{.kind = CommandKind::place, .values = {nan, 0.0f, 0.0f}},
         Command{.kind = CommandKind::drag, .values = {0.0f, far, 0.0f}},

@@ -5,7 +5,7 @@ import { COLOURINGS, colouringOf, unitOf } from "../src/mesh3d/fields.ts";
 import { History } from "../src/live/history.ts";
 import { paceText } from "../src/live/pace.ts";
 import { legsTo, Placing, startOf } from "../src/live/placing.ts";
-import { decodeMessage, encodeCommand } from "../src/live/protocol.ts";
+import { decodeMessage, decodeText, encodeCommand } from "../src/live/protocol.ts";
 import { rimOf } from "../src/mesh3d/vessel_model.ts";
 
 const bytes = (buffer: ArrayBuffer) => Array.from(new Uint8Array(buffer));
@@ -87,6 +87,38 @@ describe("messages", () => {
     expect([...read.regions[0]!.triangles]).toEqual([2, 1, 0]);
     const older = decodeMessage(keyframe().slice(0, 16 + 36 + 24 + 3));
     expect(older).toMatchObject({ kinds: null, tissue: "", regions: [] });
+  });
+
+  test("samples are read tool by tool", () => {
+    const view = new DataView(new ArrayBuffer(8 + 2 * 24));
+    view.setUint8(0, 3);
+    view.setUint8(1, 2);
+    view.setUint32(4, 2, true);
+    [0.25, 1, 2, 3, 4].forEach((value, i) => view.setFloat32(8 + 24 + 4 + 4 * i, value, true));
+    view.setUint32(8 + 24, 9, true);
+    const read = decodeMessage(view.buffer);
+    if (read?.kind !== "samples") throw new Error("no samples");
+    expect(read.rows[1]).toEqual({ epoch: 9, time: 0.25, depth: [1, 3], force: [2, 4] });
+    expect(decodeMessage(view.buffer.slice(0, 55))).toBeNull();
+  });
+
+  test("the whole body's tets come last", () => {
+    const tets = Uint32Array.of(1, 0, 1, 2, 2);
+    const whole = new Uint8Array([...new Uint8Array(keyframe()), ...new Uint8Array(tets.buffer)]).buffer;
+    expect(decodeMessage(whole)).toMatchObject({ kind: "keyframe", tets: Uint32Array.of(0, 1, 2, 2) });
+    expect(decodeMessage(whole.slice(0, -4))).toBeNull();
+  });
+
+  test("a text has the fields of its message, of their kinds", () => {
+    const role = { type: "role", drives: true, led: true, viewers: 2 };
+    expect(decodeText(JSON.stringify(role))).toEqual(role);
+    expect(decodeText(JSON.stringify({ ...role, viewers: undefined }))).toBeNull();
+    expect(decodeText(JSON.stringify({ ...role, drives: 1 }))).toBeNull();
+    expect(decodeText(JSON.stringify({ ...role, type: "rule" }))).toBeNull();
+    const numbers = { epoch: 1, cut_area_m2: 0, cut_longest_s: null, pieces: 1, events_before: 0 }; // null: not finite
+    const state = { type: "state", ...numbers, parameters: [], speeds_m_s: [], events: [] };
+    expect(decodeText(JSON.stringify(state))).toEqual(state);
+    expect(decodeText(JSON.stringify({ ...state, events: null }))).toBeNull();
   });
 
   test("what is cut short, or of another kind, is none", () => {

@@ -2,12 +2,13 @@
 #include "view/protocol/messages.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "report/fractions.h"
 #include "report/json_text.h"
+#include "view/protocol/bytes.h"
+#include "view/wire/wire.h"
 
 namespace glisson::view {
 namespace {
@@ -15,72 +16,36 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kMostSamples = 4000;
-constexpr std::size_t kFieldAt = 3, kRangeAt = 56;  // of a frame
 
-/// Little-endian numbers one after the other.
-class Bytes {
- public:
-  void u8(std::uint8_t x) { text_.push_back(static_cast<char>(x)); }
-  void u16(std::uint16_t x) { put(x, 2); }
-  void u32(std::uint32_t x) { put(x, 4); }
-  void f32(double x) { u32(std::bit_cast<std::uint32_t>(static_cast<float>(x))); }
-  void f64(double x) { put(std::bit_cast<std::uint64_t>(x), 8); }
-  void vec(const Vec3d& v) {
-    for (std::size_t k = 0; k < 3; ++k) f32(v[k]);
-  }
-  void align() {
-    while (text_.size() % 4 != 0) u8(0);
-  }
-  void words(const std::string& text) {
-    u32(static_cast<std::uint32_t>(text.size()));
-    text_ += text;
-    align();
-  }
-  void triangles(const std::vector<std::uint32_t>& corners) {
-    for (const std::uint32_t corner : corners) u32(corner);
-  }
-  std::string take() { return std::move(text_); }
-  void reserve(std::size_t bytes) { text_.reserve(bytes); }
-
- private:
-  void put(std::uint64_t x, int bytes) {
-    for (int i = 0; i < bytes; ++i) u8(static_cast<std::uint8_t>(x >> (8 * i) & 255u));
-  }
-  std::string text_;
-};
-
-std::uint8_t flags_of(const Snapshot& state) {
-  unsigned flags = 0;
-  const std::array<bool, 5> bits{state.paused, state.building, state.playing, state.grabbing, state.stopped};
-  for (std::size_t i = 0; i < bits.size(); ++i) flags |= bits[i] ? 1u << i : 0u;
-  return static_cast<std::uint8_t>(flags);
+wire::Tool wire_of(const ToolState& tool) {
+  wire::Tool out{.depth = tool.depth,
+                 .force = tool.force,
+                 .axes = {},
+                 .aside = {tool.aside[0], tool.aside[1]},
+                 .points = tool.line};
+  for (std::size_t k = 0; k < 9; ++k) out.axes[k] = tool.axes.m[k / 3][k % 3];
+  return out;
 }
 
-void put_head(Bytes& out, const Snapshot& state, std::uint32_t keyframe) {
-  out.u8(static_cast<std::uint8_t>(MessageKind::frame));
-  out.u8(flags_of(state));
-  out.u8(static_cast<std::uint8_t>(state.tools.size()));
-  out.u8(static_cast<std::uint8_t>(Field::none));
-  out.u32(keyframe);
-  out.u32(state.epoch);
-  out.u32(state.echo);
-  out.f64(state.time);
-  out.f32(state.realtime_factor);
-  out.f32(state.p50_us);
-  out.f32(state.p99_us);
-  out.u32(static_cast<std::uint32_t>(state.dropped));
-  out.vec(state.grab_force);
-}
-
-void put_tool(Bytes& out, const ToolState& tool) {
-  out.f32(tool.depth);
-  out.vec(tool.force);
-  for (const auto& row : tool.axes.m) {
-    for (const double x : row) out.f32(x);
-  }
-  for (const double x : tool.aside) out.f32(x);
-  out.u32(static_cast<std::uint32_t>(tool.line.size()));
-  for (const Vec3d& x : tool.line) out.vec(x);
+/// All of a frame but its displacements.
+wire::Frame frame_without_places(const Snapshot& state, std::uint32_t keyframe) {
+  wire::Frame frame;
+  frame.paused = state.paused;
+  frame.building = state.building;
+  frame.playing = state.playing;
+  frame.grabbing = state.grabbing;
+  frame.stopped = state.stopped;
+  frame.keyframe = keyframe;
+  frame.epoch = state.epoch;
+  frame.echo = state.echo;
+  frame.time = state.time;
+  frame.realtime_factor = state.realtime_factor;
+  frame.p50 = state.p50_us;
+  frame.p99 = state.p99_us;
+  frame.dropped = static_cast<std::uint32_t>(state.dropped);
+  frame.grab_force = state.grab_force;
+  for (const ToolState& tool : state.tools) frame.tools.push_back(wire_of(tool));
+  return frame;
 }
 
 /// A displacement as it is drawn: at the rim of the picture where it leads beyond, since all are fractions of the largest.
@@ -89,65 +54,70 @@ Vec3d shown(const Vec3d& u, const Surface& surface) {
   return far > most ? u * (most / far) : u;
 }
 
-json numbers(const Vec3d& v) { return {v.x, v.y, v.z}; }
+std::vector<double> numbers(const Vec3d& v) { return {v.x, v.y, v.z}; }
 
-json tool_json(const ToolInfo& x) {
-  return {{"name", x.name},          {"instrument", x.instrument}, {"direction", numbers(x.direction)},
-          {"side", numbers(x.side)}, {"third", numbers(x.third)},  {"least_m", x.least_depth},
-          {"most_m", x.most_depth},  {"speed_m_s", x.speed},       {"can_play", x.can_play}};
+wire::ToolInfo wire_of(const ToolInfo& x) {
+  return {.name = x.name,
+          .instrument = x.instrument,
+          .direction = numbers(x.direction),
+          .side = numbers(x.side),
+          .third = numbers(x.third),
+          .least_m = x.least_depth,
+          .most_m = x.most_depth,
+          .speed_m_s = x.speed,
+          .can_play = x.can_play};
 }
 
-json recorded_json(const Recorded* recorded) {
-  if (recorded == nullptr) return nullptr;
-  return {{"start_s", recorded->start}, {"end_s", recorded->end}, {"frames", recorded->frames}};
+wire::ParameterInfo wire_of(const ParameterInfo& x) {
+  return {.label = x.label,
+          .unit = x.unit,
+          .least = x.least,
+          .most = x.most,
+          .value = x.value,
+          .log = x.log,
+          .tissue = x.tissue,
+          .group = x.group,
+          .formula = x.formula,
+          .help = x.help};
+}
+
+template <class Text>
+std::string text_of(const Text& text) {
+  return json_text(wire::json_of<json>(text));
 }
 
 }  // namespace
 
 std::string keyframe_message(const Surface& surface, std::uint32_t number) {
+  wire::Inside inside{.kinds = surface.kinds(), .tissue = surface.tissue(), .regions = {}, .whole = {}};
+  for (const Surface::Region& region : surface.regions()) inside.regions.push_back({region.name, region.triangles});
+  if (!surface.tets().empty()) inside.whole = wire::Tets{surface.tets()};
+  wire::Keyframe keyframe{
+      .number = number, .rest = {}, .triangles = surface.triangles(), .marks = {}, .inside = std::move(inside)};
+  for (std::size_t i = 0; i < surface.size(); ++i) {
+    keyframe.rest.push_back(surface.rest(i));
+    keyframe.marks.push_back(surface.mark(i));
+  }
   Bytes out;
   out.reserve(64 + 13 * surface.size() + 5 * surface.triangles().size());
-  out.u8(static_cast<std::uint8_t>(MessageKind::keyframe));
-  out.align();
-  out.u32(number);
-  out.u32(static_cast<std::uint32_t>(surface.size()));
-  out.u32(static_cast<std::uint32_t>(surface.triangles().size() / 3));
-  for (std::size_t i = 0; i < surface.size(); ++i) out.vec(surface.rest(i));
-  out.triangles(surface.triangles());
-  for (std::size_t i = 0; i < surface.size(); ++i) out.u8(surface.mark(i));
-  for (const std::uint8_t kind : surface.kinds()) out.u8(kind);
-  out.align();
-  out.words(surface.tissue());
-  out.u32(static_cast<std::uint32_t>(surface.regions().size()));
-  for (const Surface::Region& region : surface.regions()) {
-    out.words(region.name);
-    out.u32(static_cast<std::uint32_t>(region.triangles.size() / 3));
-    out.triangles(region.triangles);
-  }
-  if (!surface.tets().empty()) {
-    out.u32(static_cast<std::uint32_t>(surface.tets().size() / 4));
-    out.triangles(surface.tets());
-  }
+  put(out, keyframe);
   return out.take();
 }
 
 std::string frame_message(const Snapshot& state, const Surface& surface, std::uint32_t keyframe) {
-  double reach = 0.0;
+  wire::Frame frame = frame_without_places(state, keyframe);
   for (std::size_t i = 0; i < surface.size(); ++i) {
     const Vec3d u = shown(state.displacement[surface.mesh_vertex(i)], surface);
-    for (std::size_t k = 0; k < 3; ++k) reach = std::max(reach, std::isfinite(u[k]) ? std::abs(u[k]) : 0.0);
+    for (std::size_t k = 0; k < 3; ++k) frame.reach = std::max(frame.reach, std::isfinite(u[k]) ? std::abs(u[k]) : 0.0);
+  }
+  frame.displacement.reserve(3 * surface.size());
+  for (std::size_t i = 0; i < surface.size(); ++i) {
+    const Vec3d u = shown(state.displacement[surface.mesh_vertex(i)], surface);
+    for (std::size_t k = 0; k < 3; ++k) frame.displacement.push_back(fraction16(u[k], frame.reach));
   }
   Bytes out;
   out.reserve(256 + 7 * surface.size());
-  put_head(out, state, keyframe);
-  out.f32(reach);
-  out.f32(0.0);  // with_field puts the range here
-  out.f32(0.0);
-  for (const ToolState& tool : state.tools) put_tool(out, tool);
-  for (std::size_t i = 0; i < surface.size(); ++i) {
-    const Vec3d u = shown(state.displacement[surface.mesh_vertex(i)], surface);
-    for (std::size_t k = 0; k < 3; ++k) out.u16(static_cast<std::uint16_t>(fraction16(u[k], reach)));
-  }
+  put(out, frame);
   return out.take();
 }
 
@@ -163,82 +133,67 @@ std::string with_field(std::string frame, Field field, const std::vector<double>
   tail.f32(high);
   for (const double x : values) tail.u8(fraction8(x - low, high - low));
   const std::string bytes = tail.take();
-  frame[kFieldAt] = static_cast<char>(field);
-  frame.replace(kRangeAt, 8, bytes, 0, 8);
-  return frame.append(bytes, 8, std::string::npos);
+  constexpr std::size_t kRange = wire::FrameAt::end - wire::FrameAt::low;
+  frame[wire::FrameAt::field] = static_cast<char>(field);
+  frame.replace(wire::FrameAt::low, kRange, bytes, 0, kRange);
+  return frame.append(bytes, kRange, std::string::npos);
 }
 
 std::string samples_message(const std::deque<ForceSample>& history, std::size_t from, std::size_t tools) {
   const std::size_t first = std::max(from, history.size() > kMostSamples ? history.size() - kMostSamples : 0);
-  Bytes out;
-  out.u8(static_cast<std::uint8_t>(MessageKind::samples));
-  out.u8(static_cast<std::uint8_t>(tools));
-  out.align();
-  out.u32(static_cast<std::uint32_t>(history.size() - first));
+  wire::Samples samples{.tools = static_cast<std::uint8_t>(tools), .rows = {}};
   for (std::size_t i = first; i < history.size(); ++i) {
-    out.u32(history[i].epoch);
-    out.f32(static_cast<double>(history[i].time));
+    wire::Sample row{.epoch = history[i].epoch, .time = static_cast<double>(history[i].time), .readings = {}};
     for (std::size_t k = 0; k < tools; ++k) {
-      out.f32(static_cast<double>(history[i].depth[k]));
-      out.f32(static_cast<double>(history[i].force[k]));
+      row.readings.push_back(static_cast<double>(history[i].depth[k]));
+      row.readings.push_back(static_cast<double>(history[i].force[k]));
     }
+    samples.rows.push_back(std::move(row));
   }
+  Bytes out;
+  put(out, samples);
   return out.take();
 }
 
 std::string hello_message(const Source& source, const SceneFacts& facts, const std::string& session) {
-  json tools = json::array(), parameters = json::array();
-  for (const ToolInfo& x : source.tools()) tools.push_back(tool_json(x));
-  for (const ParameterInfo& x : source.parameters()) {
-    parameters.push_back({{"label", x.label},
-                          {"unit", x.unit},
-                          {"least", x.least},
-                          {"most", x.most},
-                          {"value", x.value},
-                          {"log", x.log},
-                          {"tissue", x.tissue},
-                          {"group", x.group},
-                          {"formula", x.formula},
-                          {"help", x.help}});
-  }
-  return json_text(json{{"type", "hello"},
-                        {"title", facts.title},
-                        {"variant", facts.variant},
-                        {"version", facts.version},
-                        {"session", session},
-                        {"vertices", source.vertices()},
-                        {"tets", source.tets()},
-                        {"can_grab", source.can_grab()},
-                        {"why_no_cut", source.why_no_cut()},
-                        {"has_stress", source.has_stress()},
-                        {"tools", std::move(tools)},
-                        {"parameters", std::move(parameters)},
-                        {"recorded", recorded_json(source.recorded())},
-                        {"can_record", static_cast<bool>(facts.recorder)},
-                        {"container", source.vessel().empty() ? json() : json::parse(source.vessel())},
-                        {"instruments", json::parse(facts.instruments)}});
+  wire::Hello hello{.title = facts.title,
+                    .variant = facts.variant,
+                    .version = facts.version,
+                    .session = session,
+                    .vertices = source.vertices(),
+                    .tets = source.tets(),
+                    .can_grab = source.can_grab(),
+                    .why_no_cut = source.why_no_cut(),
+                    .has_stress = source.has_stress(),
+                    .tools = {},
+                    .parameters = {},
+                    .recorded = {},
+                    .can_record = static_cast<bool>(facts.recorder),
+                    .container = source.vessel(),
+                    .instruments = facts.instruments};
+  for (const ToolInfo& x : source.tools()) hello.tools.push_back(wire_of(x));
+  for (const ParameterInfo& x : source.parameters()) hello.parameters.push_back(wire_of(x));
+  if (const Recorded* x = source.recorded()) hello.recorded = {x->start, x->end, x->frames};
+  return text_of(hello);
 }
 
 std::string role_message(bool drives, bool led, std::size_t viewers) {
-  return json_text(json{{"type", "role"}, {"drives", drives}, {"led", led}, {"viewers", viewers}});
+  return text_of(wire::Role{.drives = drives, .led = led, .viewers = viewers});
 }
 
 std::string state_message(const Snapshot& state, std::size_t pieces) {
-  json events = json::array();
-  for (const LiveEvent& x : state.events) {
-    events.push_back({{"tool", x.tool}, {"event", x.what}, {"time_s", x.time}, {"depth_m", x.depth}});
-  }
-  return json_text(json{{"type", "state"},
-                        {"epoch", state.epoch},
-                        {"parameters", state.parameters},
-                        {"speeds_m_s", state.speeds},
-                        {"cut_area_m2", state.cut_area},
-                        {"cut_longest_s", state.cut_longest},
-                        {"pieces", pieces},
-                        {"events_before", state.events_before},
-                        {"events", std::move(events)}});
+  wire::SlowState slow{.epoch = state.epoch,
+                       .parameters = state.parameters,
+                       .speeds_m_s = state.speeds,
+                       .cut_area_m2 = state.cut_area,
+                       .cut_longest_s = state.cut_longest,
+                       .pieces = pieces,
+                       .events_before = state.events_before,
+                       .events = {}};
+  for (const LiveEvent& x : state.events) slow.events.push_back({x.tool, x.what, x.time, x.depth});
+  return text_of(slow);
 }
 
-std::string notice_message(const std::string& text) { return json_text(json{{"type", "notice"}, {"text", text}}); }
+std::string notice_message(const std::string& text) { return text_of(wire::Notice{text}); }
 
 }  // namespace glisson::view

@@ -1,4 +1,4 @@
-// messages.h — what the server tells a page, as bytes: docs/view.md has them as a table.
+// messages.h — what the server tells a page, as bytes: view/wire/messages.toml describes them.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +11,6 @@
 #include "view/state/surface.h"
 
 namespace glisson::view {
-
-/// Kinds of binary messages, their first byte.
-enum class MessageKind : std::uint8_t { keyframe = 1, frame = 2, samples = 3 };
 
 /// The skin at rest. @param number  that frames refer to
 std::string keyframe_message(const Surface& surface, std::uint32_t number);

@@ -1,6 +1,7 @@
 // colouring.ts — the numbers of a streamed frame that colour the body, and a range that stands still.
 import type { Colouring } from "../mesh3d/fields.ts";
 import type { LiveFrame } from "./protocol.ts";
+import { FIELDS } from "./wire.ts";
 
 const GROWS = 1.15; // beyond what is there: in steps, so that colours do not creep
 const SHRINKS = 0.35; // when less than this share of the range has been used …
@@ -43,6 +44,9 @@ export class ColourRange {
   }
 }
 
+/** Number of the field that the program is asked for; none where the page has what it needs. */
+export const fieldOf = ({ name }: Colouring): number => (name === "displacement" ? FIELDS.none : FIELDS[name]);
+
 /** The numbers of a frame at each vertex, and between which they lie; null: this frame does not have them. */
 export function valuesOf(
   colouring: Colouring,
@@ -50,7 +54,7 @@ export function valuesOf(
   out: Float32Array,
 ): { low: number; high: number } | null {
   if (colouring.name === "displacement") return lengths(frame, out);
-  if (colouring.name === "none" || frame.field !== colouring.field) return null;
+  if (colouring.name === "none" || frame.field !== fieldOf(colouring)) return null;
   const perStep = (frame.high - frame.low) / 255;
   for (let i = 0; i < out.length; i++) out[i] = frame.low + (frame.values[i] ?? 0) * perStep;
   return { low: frame.low, high: frame.high };

@@ -1,6 +1,6 @@
 // connection.ts — the WebSocket: comes back by itself, goes on as the same viewer, measures how long an act takes to show.
 import { type Command, type Keyframe, type LiveFrame, type Samples, type TextMessage } from "./protocol.ts";
-import { decodeMessage, encodeCommand } from "./protocol.ts";
+import { decodeMessage, decodeText, encodeCommand } from "./protocol.ts";
 
 const FIRST_WAIT = 400; // ms
 const LONGEST_WAIT = 5000;
@@ -49,7 +49,8 @@ export class Connection {
 
   private receive(data: string | ArrayBuffer): void {
     if (typeof data === "string") {
-      const message = JSON.parse(data) as TextMessage;
+      const message = decodeText(data);
+      if (!message) return;
       if (message.type === "hello") keep(message.session);
       return this.listener.text(message);
     }

@@ -4,6 +4,7 @@ import { formatInteger, formatSignificant } from "../format/number.ts";
 import { button, download, h, select } from "../page/dom.ts";
 import { forceText } from "../mesh3d/force_arrow.ts";
 import { toggleTheme } from "../page/theme.ts";
+import { fieldOf } from "./colouring.ts";
 import { Connection, type Status } from "./connection.ts";
 import { ForcePlot } from "./force_plot.ts";
 import { History } from "./history.ts";
@@ -26,6 +27,7 @@ import type {
 } from "./protocol.ts";
 import { Slider } from "./slider.ts";
 import { TissuePanel } from "./tissue_panel.ts";
+import { FIELDS } from "./wire.ts";
 
 interface ToolSliders {
   depth: Slider;
@@ -110,7 +112,7 @@ export class LivePage {
   }
 
   private body(): HTMLElement {
-    this.view.onColour = ({ field }) => this.send({ kind: "colour", index: field });
+    this.view.onColour = (colouring) => this.send({ kind: "colour", index: fieldOf(colouring) });
     this.view.onInside = (wanted) => this.send({ kind: "inside", index: wanted ? 1 : 0 });
     const tools = h(
       "div",
@@ -181,8 +183,8 @@ export class LivePage {
     const again = this.hello !== null;
     this.hello = hello;
     this.view.offer(hello.has_stress);
-    const { field } = this.view.colours;
-    if (field !== 1) this.send({ kind: "colour", index: field }); // a new line begins with s
+    const field = fieldOf(this.view.colours);
+    if (field !== FIELDS.intensity) this.send({ kind: "colour", index: field }); // a new line begins with s
     this.view.askAgain();
     if (again) return; // the line was cut: everything here is as it was
     this.history = new History(hello.tools.length);

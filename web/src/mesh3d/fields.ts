@@ -7,7 +7,6 @@ export interface Colouring {
   name: ColourName;
   label: string;
   symbol: string;
-  field: number; // that the program of a live view is asked for; 0: none, the page has what it needs
   units: readonly { unit: string; perUnit: number; upTo: number }[]; // the first that the range lies within
   rest: number; // value of a body at rest: colours begin there
   least: number; // span that the range has at least: noise at rest stays one colour; displacement: of the body's size
@@ -25,19 +24,17 @@ export const COLOURINGS: readonly Colouring[] = [
     name: "intensity",
     label: "Equivalent shear strain s",
     symbol: "Equivalent shear strain s",
-    field: 1,
     units: plain,
     rest: 0,
     least: 0.02,
   },
-  { name: "shape", label: "Shape measure q", symbol: "Shape q", field: 2, units: plain, rest: 1, least: 0.002 },
-  { name: "pressure", label: "Pressure p", symbol: "Pressure p", field: 3, units: pascals, rest: 0, least: 2 },
-  { name: "von_mises", label: "Von Mises stress", symbol: "Von Mises", field: 4, units: pascals, rest: 0, least: 2 },
+  { name: "shape", label: "Shape measure q", symbol: "Shape q", units: plain, rest: 1, least: 0.002 },
+  { name: "pressure", label: "Pressure p", symbol: "Pressure p", units: pascals, rest: 0, least: 2 },
+  { name: "von_mises", label: "Von Mises stress", symbol: "Von Mises", units: pascals, rest: 0, least: 2 },
   {
     name: "contact_pressure",
     label: "Contact pressure",
     symbol: "Contact",
-    field: 5,
     units: pascals,
     rest: 0,
     least: 2,
@@ -46,7 +43,6 @@ export const COLOURINGS: readonly Colouring[] = [
     name: "displacement",
     label: "Displacement |u|",
     symbol: "|u|",
-    field: 0,
     units: [{ unit: "mm", perUnit: 1e3, upTo: Infinity }],
     rest: 0,
     least: 2e-3,
@@ -57,7 +53,6 @@ export const AS_TISSUE: Colouring = {
   name: "none",
   label: "Tissue",
   symbol: "",
-  field: 0,
   units: plain,
   rest: 0,
   least: 1,
