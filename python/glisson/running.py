@@ -69,9 +69,11 @@ def run(
 
 
 def check(scene: AnyScene, variant: str | None = None, *, overrides: Overrides | None = None) -> list[Advice]:
-    """What `glisson check` says of a scene, as a list: meshes that are too coarse, tissues that lock, paths that miss the body,
-    steps that could be longer. Each has the `rule` that gives it, its `kind` (a "remark", or a "warning" where results may be
-    wrong), and the `text` with the numbers and the way out.
+    """What `glisson check` says of a scene, as a list.
+
+    Meshes that are too coarse, tissues that lock, paths that miss the body, steps that could be longer: each has the `rule`
+    that gives it, its `kind` (a "remark", or a "warning" where results may be wrong), and the `text` with the numbers and
+    the way out.
 
     Variants are built, some several times, without a limit of time; none is run.
 
