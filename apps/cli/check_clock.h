@@ -10,20 +10,22 @@
 #include <string>
 #include <vector>
 
+#include "glisson/scene/advice.h"
+
 namespace glisson::app {
 
 /// Safe to call from both threads.
-class CheckClock {
+class CheckClock : public TrialTime {
  public:
   /// @param variants  names of those that are to be checked
   explicit CheckClock(std::vector<std::string> variants) : open_(std::move(variants)) {}
 
   /// Whether a part that may be left out can be begun. @param seconds  that it may take
-  bool has_time(double seconds = 0.0) const { return elapsed() + seconds < kOptional; }
-  double elapsed() const;
+  bool has_time(double seconds = 0.0) const override { return elapsed() + seconds < kOptional; }
+  double elapsed() const override;
   /// Says what is being done now.
-  void begin(const std::string& part);
-  void leave_out(const std::string& what);
+  void begin(const std::string& part) override;
+  void leave_out(const std::string& what) override;
   /// A variant has been checked, or left out.
   void done(const std::string& variant);
   /// "left out for want of time: …", a line; empty: nothing was.

@@ -11,14 +11,12 @@
 #include <variant>
 #include <vector>
 
+#include "cli/advice_lines.h"
 #include "cli/check_clock.h"
 #include "cli/check_steps.h"
 #include "cli/commands.h"
-#include "cli/edge_cells.h"
-#include "cli/near_bounds.h"
 #include "cli/progress.h"
 #include "cli/tissue_text.h"
-#include "glisson/material/locking.h"
 #include "glisson/scene/body_places.h"
 #include "program/exit_code.h"
 #include "program/mesh_cache.h"
@@ -45,20 +43,15 @@ struct CheckOptions {
   int threads = 1;
 };
 
-constexpr double kCoarseEdge = 0.08, kFineEdge = 0.04;  // cells across a sharp edge, of its size (docs/contact.md)
-
 std::string tissue_text(const Tissue& t) { return fmt::format("{}, ρ = {:.6g} kg/m³", law_text(t), t.density); }
 
-/// @param imported  from a file, whose reader has warned already
-void print_mesh(const TetMesh& mesh, double mass_kg, bool imported) {
-  const MeshReport report = inspect(mesh);
+void print_mesh(const VariantAtRest& rest) {
+  const MeshReport& report = rest.report;
   const Vec3d size = report.box_max - report.box_min;
   say("  mesh     {} vertices, {} tets, {:.4g} × {:.4g} × {:.4g} mm, {:.4g} ml, {:.4g} g; shape {:.3f} worst, {:.3f} "
       "median\n",
-      report.vertices, report.tets, 1e3 * size.x, 1e3 * size.y, 1e3 * size.z, 1e6 * report.volume, 1e3 * mass_kg,
+      report.vertices, report.tets, 1e3 * size.x, 1e3 * size.y, 1e3 * size.z, 1e6 * report.volume, 1e3 * rest.mass_kg,
       report.worst_mean_ratio, report.median_mean_ratio);
-  if (imported) return;
-  for (const std::string& warning : report.warnings) say("           warning: {}\n", warning);
 }
 
 /// A set by its vertices that hold and bear: those of tets.
@@ -91,103 +84,6 @@ std::string kind_word(const std::variant<T...>& what) {
   return std::visit(word, what);
 }
 
-/// That cells are too coarse for a sharp edge, and which would do.
-void print_edge(const Variant& v, const InstrumentSpec& instrument, const TetMesh& mesh) {
-  const std::optional<EdgeCells> cells = cells_under_edge(mesh, instrument);
-  if (!cells || cells->share() <= kCoarseEdge) return;
-  const double finer = cells->share() / kFineEdge;
-  say("  edge     \"{}\": cells of {:.3g} mm across its sharp edge are {:.2g} of its {} of {:.4g} mm, and its force "
-      "may be "
-      "wrong by\n           about that share; cells of {:.2g} mm there, {:.2g} of it, keep it within 2 %: use a mesh "
-      "graded "
-      "at the edge,\n           ",
-      instrument.name, 1e3 * cells->across, cells->share(),
-      kind_word(instrument.what) == Block::kName ? "half width" : "radius", 1e3 * cells->size,
-      1e3 * kFineEdge * cells->size, kFineEdge);
-  if (const auto* cylinder = std::get_if<CylinderOptions>(&v.mesh)) {
-    const double radial = std::ceil(finer * cylinder->radial_cells), axial = std::ceil(finer * cylinder->axial_cells);
-    say("radial_cells = {:.0f} and axial_cells = {:.0f} here ({:.2g} million tets), ", radial, axial,
-        18e-6 * radial * radial * axial);
-  }
-  say("or round the edge by a cell: edge_radius_mm = {:.2g}\n", 1e3 * cells->across);
-}
-
-/// The keys that make a generated mesh so many times as fine.
-std::string finer_mesh(const MeshSource& mesh, double factor) {
-  const auto times = [&](int cells) { return std::ceil(factor * cells - 1e-9); };
-  if (const auto* box = std::get_if<BoxOptions>(&mesh)) {
-    return fmt::format("mesh.cells = [{}, {}, {}]", times(box->cells[0]), times(box->cells[1]), times(box->cells[2]));
-  }
-  if (const auto* cylinder = std::get_if<CylinderOptions>(&mesh)) {
-    return fmt::format("mesh.radial_cells = {} and mesh.axial_cells = {}", times(cylinder->radial_cells),
-                       times(cylinder->axial_cells));
-  }
-  if (const auto* body = std::get_if<ImplicitBody>(&mesh)) {
-    return fmt::format("mesh.edge_mm = {:.2g}, or that edge there alone by [[mesh.size]]", 1e3 * body->edge / factor);
-  }
-  if (const auto* liver = std::get_if<LiverOptions>(&mesh)) {
-    return fmt::format("mesh.edge_mm = {:.2g}, or that edge there alone by [[mesh.size]]", 1e3 * liver->edge / factor);
-  }
-  return fmt::format("a mesh {:.2g} times as fine there", factor);
-}
-
-/// That a pad or instrument acts on few or large faces, and which mesh would do.
-void print_faces(const Variant& v, const std::string& name, const PressedFaces& faces) {
-  if (!faces.coarse()) return;
-  const std::string few = faces.count < PressedFaces::kFew ? fmt::format("{} ", faces.count) : "";
-  const std::string large = faces.count > 0 ? fmt::format(" with edges of {:.3g} mm, {:.2g} of its {:.3g} mm",
-                                                          1e3 * faces.edge, faces.edge / faces.size, 1e3 * faces.size)
-                                            : "";
-  say("  coarse   \"{}\" acts on {}faces{}: its force may be far off; {} or more with edges\n           of a third of "
-      "that or less take {}\n",
-      name, few, large, PressedFaces::kFew, finer_mesh(v.mesh, faces.finer()));
-}
-
-/// That the mesh does not resolve a needle's zone, and what would do.
-void print_zone(const Variant& v, const InstrumentSpec& instrument, const TetMesh& mesh) {
-  const std::optional<ZoneEdges> edges = edges_in_zone(mesh, instrument);
-  if (!edges || edges->share() <= ZoneEdges::kResolved) return;
-  say("  zone     \"{}\": edges of {:.3g} mm around it are {:.2g} of its zone of {:.3g} mm: its force and depth belong "
-      "to "
-      "this mesh;\n           half a zone resolves it: zone_mm = {:.2g}, or {}\n",
-      instrument.name, 1e3 * edges->edge, edges->share(), 1e3 * edges->zone, 2e3 * edges->edge,
-      finer_mesh(v.mesh, 2.0 * edges->share()));
-}
-
-/// That linear tets lock in a tissue, and the key that mends it.
-void print_locking(const std::string& table, const Tissue& t) {
-  const std::optional<double> nu = locking_ratio(t);
-  if (!nu) return;
-  say("  locking  ν = {:.3g} with volume_change = \"element\": tets that keep their own volumes are too stiff;\n"
-      "           {}.volume_change = \"average_nodal\" mends it\n",
-      *nu, table);
-}
-
-/// Whether a tissue's forces are a secant law's, whose closed cycles give or take work of their own.
-bool has_cycle_work(const Tissue& t) {
-  return !t.hyperelastic && !t.has_constant_moduli() && t.law_form == LawForm::secant;
-}
-
-/// Says once of a scene which tissues have such a law, and the way out.
-void print_cycle_work(const Scene& scene) {
-  std::vector<std::string> names;
-  const auto look = [&](const Tissue& tissue) {
-    const std::string name = "\"" + tissue.name + "\"";
-    if (has_cycle_work(tissue) && std::ranges::find(names, name) == names.end()) names.push_back(name);
-  };
-  for (const Variant& v : scene.variants) {
-    look(v.tissue);
-    for (const RegionSpec& region : v.regions) look(region.tissue);
-  }
-  if (names.empty()) return;
-  say("\nThe stiffness law of {} is in secant form, the paper's, and stores no energy: over a closed cycle of "
-      "deformation it can give\n"
-      "work that nothing paid, and a body that nothing damps may gain energy. law_form = \"energy\" gives the force of "
-      "an energy\n"
-      "(docs/laws.md). A run says where that happens.\n",
-      fmt::join(names, ", "));
-}
-
 /// Membranes that a needle has to break on its way.
 void print_membranes(const InstrumentSpec& instrument) {
   const auto* needle = std::get_if<NeedleOptions>(&instrument.what);
@@ -208,34 +104,23 @@ void print_start(const InstrumentSpec& x, const TetMesh& mesh) {
   say("           starts at ({:.4g}, {:.4g}, {:.4g}) mm\n", mm(tip.x), mm(tip.y), mm(tip.z));
 }
 
-/// That an instrument's path passes the body by.
-void print_meeting(const Variant& v, const InstrumentSpec& x, const TetMesh& mesh) {
-  const std::optional<PathMeeting> meeting = meets_body(x, mesh, run_duration(v));
-  if (!meeting || meeting->meets) return;
-  say("  misses   \"{}\" never meets the body at rest: its tip passes {:.3g} mm from it; move `tip_m`, turn "
-      "`direction`, move\n           deeper, or give `aim` in place of `tip_m`, which finds the body\n",
-      x.name, 1e3 * meeting->beside);
-}
-
-void print_interactions(const Variant& v, const Taste& taste) {
+void print_interactions(const Variant& v, const TetMesh& mesh, const std::vector<Advice>& advice) {
   for (const CapsuleSpec& x : v.capsules) {
     say("  capsule  \"{}\" on {}: {:.4g} mm, E = {:.6g} Pa\n", x.options.name,
-        x.set.empty() ? "all of the surface" : set_text(taste.mesh, x.set), 1e3 * x.options.thickness,
+        x.set.empty() ? "all of the surface" : set_text(mesh, x.set), 1e3 * x.options.thickness,
         x.options.youngs_modulus);
   }
   if (v.container) {
     say("  vessel   {}, {}\n", kind_word(v.container->options.vessel), word_of(v.container->hold));
   }
-  for (const InstrumentSpec& x : v.instruments) {
+  for (std::size_t i = 0; i < v.instruments.size(); ++i) {
+    const InstrumentSpec& x = v.instruments[i];
     const std::optional<double> end = make_driver(x)->end();
     say("  tool     \"{}\", {}: {}{}\n", x.name, kind_word(x.what), kind_word(x.motion.how),
         end ? fmt::format(", until {:.4g} s", *end) : "");
-    print_start(x, taste.mesh);
-    print_meeting(v, x, taste.mesh);
+    print_start(x, mesh);
     print_membranes(x);
-    print_edge(v, x, taste.mesh);
-    print_zone(v, x, taste.mesh);
-    if (const std::optional<PressedFaces> faces = faces_under(taste.mesh, x)) print_faces(v, x.name, *faces);
+    print_advice(advice, Advice::About::instrument, i);
   }
 }
 
@@ -267,42 +152,50 @@ std::string what_holds(const Variant& v) {
   return "it is held by the sets of its tools, from the start of their motion on";
 }
 
-void print_body(const Variant& v, const Taste& taste) {
-  print_mesh(taste.mesh, taste.mass_kg, std::holds_alternative<MeshFile>(v.mesh));
-  print_near_bounds(v, taste.mesh);
+void print_tool(const ToolSpec& tool, const TetMesh& mesh) {
+  const PressMotion& m = tool.motion;
+  if (tool.rotation || tool.poses) {
+    say("  tool     \"{}\" on {}: {}, from {:.4g} s to {:.4g} s\n", tool.name, set_text(mesh, tool.set),
+        tool.rotation ? "turns about (" + vector_text(tool.rotation->axis) + ") through (" +
+                            vector_text(tool.rotation->center) + ") m"
+                      : std::to_string(tool.poses->motion.times.size()) + " poses",
+        tool_start(tool), tool_path(tool).end.value_or(0.0));
+  } else if (tool.record) {
+    say("  tool     \"{}\" on {}: a recorded path of {} points, from {:.4g} s to {:.4g} s\n", tool.name,
+        set_text(mesh, tool.set), tool.record->motion.times.size(), tool_start(tool),
+        tool_path(tool).end.value_or(0.0));
+  } else {
+    say("  tool     \"{}\" on {}: {:.4g} mm at {:.4g} mm/s, from {:.4g} s to {:.4g} s\n", tool.name,
+        set_text(mesh, tool.set), 1e3 * m.depth, 1e3 * m.velocity, m.start, press_end(m));
+  }
+}
+
+void print_body(const Variant& v, const VariantAtRest& rest) {
+  const std::vector<Advice> advice = advise_on_body(v, rest);
+  const auto advise_on = [&](Advice::About about, std::optional<std::size_t> index = {}) {
+    print_advice(advice, about, index);
+  };
+  print_mesh(rest);
+  for (const Advice::About about : {Advice::About::mesh, Advice::About::set, Advice::About::region}) advise_on(about);
   say("  tissue   \"{}\": {}\n", v.tissue.name, tissue_text(v.tissue));
-  print_locking("tissue", v.tissue);
-  for (const RegionSpec& region : v.regions) {
-    say("  region   \"{}\": {}\n", region.name, tissue_text(region.tissue));
-    if (!(region.tissue.volume_change == v.tissue.volume_change)) print_locking("its tissue", region.tissue);
+  advise_on(Advice::About::tissue, 0);
+  for (std::size_t i = 0; i < v.regions.size(); ++i) {
+    say("  region   \"{}\": {}\n", v.regions[i].name, tissue_text(v.regions[i].tissue));
+    advise_on(Advice::About::tissue, i + 1);
   }
   for (const FixedSpec& fixed : v.fixed) {
     const std::string moved = fixed.record ? ", moved by " + fixed.record->path.filename().string() : "";
-    say("  fixed    {}, in {}{}\n", set_text(taste.mesh, fixed.set), axes_text(fixed.axes), moved);
+    say("  fixed    {}, in {}{}\n", set_text(rest.mesh, fixed.set), axes_text(fixed.axes), moved);
   }
   if (v.fixed.empty()) say("  fixed    nothing: {}\n", what_holds(v));
   for (const LoadSpec& load : v.loads) {
-    say("  load     {}: {}\n", set_text(taste.mesh, load.set), load_text(load.load));
+    say("  load     {}: {}\n", set_text(rest.mesh, load.set), load_text(load.load));
   }
-  for (const ToolSpec& tool : v.tools) {
-    const PressMotion& m = tool.motion;
-    if (tool.rotation || tool.poses) {
-      say("  tool     \"{}\" on {}: {}, from {:.4g} s to {:.4g} s\n", tool.name, set_text(taste.mesh, tool.set),
-          tool.rotation ? "turns about (" + vector_text(tool.rotation->axis) + ") through (" +
-                              vector_text(tool.rotation->center) + ") m"
-                        : std::to_string(tool.poses->motion.times.size()) + " poses",
-          tool_start(tool), tool_path(tool).end.value_or(0.0));
-    } else if (tool.record) {
-      say("  tool     \"{}\" on {}: a recorded path of {} points, from {:.4g} s to {:.4g} s\n", tool.name,
-          set_text(taste.mesh, tool.set), tool.record->motion.times.size(), tool_start(tool),
-          tool_path(tool).end.value_or(0.0));
-    } else {
-      say("  tool     \"{}\" on {}: {:.4g} mm at {:.4g} mm/s, from {:.4g} s to {:.4g} s\n", tool.name,
-          set_text(taste.mesh, tool.set), 1e3 * m.depth, 1e3 * m.velocity, m.start, press_end(m));
-    }
-    print_faces(v, tool.name, faces_of_pad(taste.mesh, tool.set));
+  for (std::size_t i = 0; i < v.tools.size(); ++i) {
+    print_tool(v.tools[i], rest.mesh);
+    advise_on(Advice::About::tool, i);
   }
-  print_interactions(v, taste);
+  print_interactions(v, rest.mesh, advice);
 }
 
 /// What is known of all variants.
@@ -319,7 +212,7 @@ void check_variant(const Variant& variant, const MeshLoader& load, CheckClock& c
   const Cost cost = cost_of(variant, taste, summary);
   clock.begin("what is said of " + variant.name);
   say("\n{}\n", variant.label == variant.name ? variant.name : variant.name + " — " + variant.label);
-  print_body(variant, taste);
+  print_body(variant, taste.rest);
   print_time(variant, load, taste, cost, summary, clock);
   if (!summary.trouble.empty()) say("  trouble  {}\n", trouble_text(summary));
   if (summary.steps == 0 && summary.trouble.empty()) {
@@ -344,7 +237,7 @@ int check_all(const Scene& scene, const CheckOptions& options, CheckClock& clock
     }
     clock.done(variant.name);
   }
-  print_cycle_work(scene);
+  print_advice(advise_on_laws(scene.variants), Advice::About::scene);
   const std::string others = clock.left_out();
   const double wall = std::max(whole.longest, whole.total / options.threads);
   const std::string time =

@@ -5,9 +5,9 @@
 #include <memory>
 
 #include "cli/batch.h"
-#include "cli/branches_note.h"
 #include "cli/commands.h"
 #include "cli/run_end.h"
+#include "glisson/scene/advice.h"
 #include "program/embedded.h"
 #include "program/exit_code.h"
 #include "program/interrupt.h"

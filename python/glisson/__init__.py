@@ -24,12 +24,12 @@ from .fitting import FitResult, TestFit, fit, known_laws
 from .meshes import convert, format_report, from_meshio, from_pyvista, read_mesh, to_pyvista, write_vtu
 from .paper_figures import figures
 from .pictures import picture
-from .running import run, simulation
+from .running import check, run, simulation
 from .scenes import load_scene, parse_scene, scenes_folder, to_toml
 from .sweeping import SweepError, sweep
 from .tissues import MaterialCurve, TorsionCurve, material_test, oscillation, tabulated, tissue_from, torsion
 
 __version__ = VERSION
 # What the functions above are made of.
-_INNER = {"annotations", "read_scene", "read_scene_text", "run_material_test", "run_oscillation", "run_torsion", "run_variant", "TorsionOptions"}
+_INNER = {"annotations", "check_variants", "read_scene", "read_scene_text", "run_material_test", "run_oscillation", "run_torsion", "run_variant", "TorsionOptions"}
 __all__ = [name for name in dir() if not name.startswith("_") and name not in _INNER]

@@ -1,4 +1,4 @@
-"""Whole runs of scenes, and simulations made from them."""
+"""Whole runs of scenes, simulations made from them, and advice before a run."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import _core
-from ._core import RunResult, Scene, Simulation, StopFlag, TetMesh, Variant
+from ._core import Advice, RunResult, Scene, Simulation, StopFlag, TetMesh, Variant
 from ._folder_lock import alone_in
 from .scenes import Overrides, as_scene
 
@@ -66,6 +66,28 @@ def run(
         with alone_in(Path(out)):
             _write(by_name, Path(out))
     return by_name
+
+
+def check(scene: AnyScene, variant: str | None = None, *, overrides: Overrides | None = None) -> list[Advice]:
+    """What `glisson check` says of a scene, as a list.
+
+    Meshes that are too coarse, tissues that lock, paths that miss the body, steps that could be longer: each has the `rule`
+    that gives it, its `kind` (a "remark", or a "warning" where results may be wrong), and the `text` with the numbers and
+    the way out.
+
+    Variants are built, some several times, without a limit of time; none is run.
+
+    :param variant: its name; none: all of them
+    :raises SceneError: where a variant cannot be built
+
+    >>> import glisson
+    >>> scene = {"mesh": {"kind": "box"}, "tissue": {"poisson_ratio": 0.49}, "fixed": [{"set": "z_min"}],
+    ...          "motion": {"max_steps": 1}}
+    >>> [(advice.kind, advice.rule) for advice in glisson.check(scene)]
+    [('warning', 'locking')]
+    """
+    read = as_scene(scene, overrides)
+    return _core.check_variants(_chosen(read, None if variant is None else [variant]))
 
 
 def simulation(

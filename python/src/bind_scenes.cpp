@@ -1,6 +1,7 @@
-// bind_scenes.cpp — scenes from files and text, and their variants.
+// bind_scenes.cpp — scenes from files and text, their variants, and advice on these.
 #include "glisson/scene/scene.h"
 
+#include "glisson/scene/advice.h"
 #include "live_simulation.h"
 
 namespace glisson::python {
@@ -89,6 +90,31 @@ void bind_charts(nb::module_& m) {
       .def_ro("variants", &ChartSpec::variants, doc("ChartSpec::variants"));
 }
 
+/// Advice on each of the variants, then on their laws.
+std::vector<Advice> advise_on(const std::vector<std::shared_ptr<Variant>>& variants) {
+  const MeshLoader load = mesh_loader();
+  const nb::gil_scoped_release free;
+  std::vector<Variant> looked_at;
+  std::vector<Advice> all;
+  for (const std::shared_ptr<Variant>& variant : variants) {
+    looked_at.push_back(*variant);
+    for (Advice& one : advise(*variant, load)) all.push_back(std::move(one));
+  }
+  for (Advice& one : advise_on_laws(looked_at)) all.push_back(std::move(one));
+  return all;
+}
+
+void bind_advice(nb::module_& m) {
+  Results<Advice>(m, "Advice")
+      .read("variant", &Advice::variant)
+      .read("rule", &Advice::rule)
+      .read("kind", &Advice::kind)
+      .read("about", &Advice::about)
+      .read("name", &Advice::name)
+      .read("text", &Advice::text);
+  m.def("check_variants", &advise_on, "variants"_a, doc("advise"));
+}
+
 std::shared_ptr<Variant> variant_called(const SceneObject& s, const std::string& name) {
   std::string known;
   for (const auto& v : s.variants) {
@@ -104,6 +130,7 @@ void bind_scenes(nb::module_& m) {
   nb::exception<SceneError>(m, "SceneError", PyExc_ValueError);
   bind_variant(m);
   bind_charts(m);
+  bind_advice(m);
   nb::class_<SceneObject>(m, "Scene", doc("Scene"))
       .def_prop_ro("file", [](const SceneObject& s) { return s.scene.file; })
       .def_prop_ro("title", [](const SceneObject& s) { return s.scene.title; })

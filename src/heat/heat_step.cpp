@@ -9,7 +9,7 @@
 namespace glisson::heat {
 namespace {
 
-constexpr int kMostIterations = 60;
+constexpr int kMostNewtonIterations = 60;
 constexpr int kFreeIterations = 3;  // in which the limiter follows the temperatures; then it only takes more
 constexpr double kFollows = 0.9;    // of what is allowed
 constexpr std::array<double, 7> kLeaves{0.9, 0.9, 0.5, 0.5, 0.1, 0.1, 0.0};  // of what is allowed, round by round
@@ -106,7 +106,7 @@ int HeatStepper::step(const Input& in, std::vector<double>& temperature, Flows& 
   std::size_t round = 0;
   double last = std::numeric_limits<double>::infinity(), tolerance = kLoosest;
   ++work_.steps;
-  for (int k = 1; k <= kMostIterations; ++k) {
+  for (int k = 1; k <= kMostNewtonIterations; ++k) {
     ++work_.iterations;
     {
       const Timed t(timed, work_.state_seconds);

@@ -102,6 +102,25 @@ def test_messages_are_those_of_the_program(program, tmp_path):
         glisson.parse_scene(SMALL, overrides={"tissue.poisson": 0.3})
 
 
+def test_advice_is_that_of_the_program(program, tmp_path):
+    """glisson.check has every text that `glisson check` prints, by variant and rule; what mends a tissue ends its warning."""
+    locking = SMALL | {"tissue": {"poisson_ratio": 0.49, "law": {"kind": "step", "threshold": 0.2, "above_Pa": 6000}}}
+    (tmp_path / "s.toml").write_text(glisson.to_toml(locking), encoding="utf-8")
+    printed = subprocess.run([program, "check", tmp_path / "s.toml"], capture_output=True, text=True, check=True).stdout
+    words = " ".join(printed.split())
+    advice = glisson.check(locking)
+    assert all(" ".join(one.text.split()) in words for one in advice)
+    found = [(one.variant, one.rule, one.kind, one.about) for one in advice]
+    for name in ("soft", "hard"):
+        assert (name, "locking", "warning", "tissue") in found and (name, "coarse", "warning", "tool") in found
+    assert found[-1] == ("", "cycle_work", "remark", "scene") and advice[-1].name == ""
+    assert {one.variant for one in glisson.check(locking, "soft")} == {"soft", ""}
+    mended = glisson.check(locking, "hard", overrides={"tissue.volume_change": "average_nodal"})
+    assert "locking" not in [one.rule for one in mended] and "text='" in repr(mended[0])
+    with pytest.raises(KeyError, match='no variant "hart"'):
+        glisson.check(locking, "hart")
+
+
 def test_variants_are_changed_before_a_run():
     """Tissue, duration and options of a variant may be set; the scene keeps them."""
     scene = glisson.parse_scene(SMALL)
