@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace glisson {
 namespace {
@@ -83,7 +84,6 @@ double StiffMasses::weigh(const ActiveKick::Outer& outer, const MovingBody& movi
 }
 
 void StiffMasses::archive(Archive& ar, MovingBody& moving) {
-  std::vector<std::uint32_t> touched = heavy_;
   std::vector<double>& masses = state_.body.stiff_mass;
   auto count = static_cast<std::uint32_t>(masses.size());
   ar(count);
@@ -95,8 +95,11 @@ void StiffMasses::archive(Archive& ar, MovingBody& moving) {
   if (!ar.reads()) return;
   ar.check(velocities_.size() == heavy_.size());
   for (const std::uint32_t v : heavy_) ar.check(v < count);
-  touched.insert(touched.end(), heavy_.begin(), heavy_.end());
-  moving.inertia_changed(touched);
+  if (state_.options.mass_scaling != MassScalingKind::variable) return;
+  // The layout may be that of another version of the body, kept when other vertices were heavy.
+  std::vector<std::uint32_t> all(state_.body.vertex_count);
+  std::iota(all.begin(), all.end(), 0U);
+  moving.inertia_changed(all);
 }
 
 }  // namespace glisson

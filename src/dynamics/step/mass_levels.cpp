@@ -151,7 +151,8 @@ void MassLevels::clear() {
 }
 
 void MassLevels::remove(std::span<const std::uint32_t> elements) {
-  for (const std::uint32_t e : elements) tets_[e] = {}, limits_[e] = {};
+  // The next pass may still tell of them, as they were: they ask for no mass.
+  for (const std::uint32_t e : elements) tets_[e] = {}, limits_[e] = {}, weights_[e] = {};
   rates_.clear();
 }
 
