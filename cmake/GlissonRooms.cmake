@@ -4,7 +4,7 @@
 #   rooms/mesh/glisson/mesh.h     → include/glisson/mesh.h, and its other public headers
 #
 # and a room is compiled with the folders of itself, of the rooms it touches and of those that these touch: an include of any other
-# header is not found. src/CMakeLists.txt has the rooms in their order, `glisson check_rooms` of the tests holds each wall.
+# header is not found. src/CMakeLists.txt has the rooms in their order; scripts/check_rooms says in words what breaks a wall.
 define_property(GLOBAL PROPERTY glisson_rooms BRIEF_DOCS "The rooms that were declared, bottom up")
 define_property(GLOBAL PROPERTY glisson_headers_with_a_room BRIEF_DOCS "Public headers that belong to a room")
 
@@ -57,7 +57,7 @@ function(glisson_check_public_headers)
   endif()
 endfunction()
 
-# glisson_sources(out ROOM [EXCEPT regex] [ONLY regex]): the sources of a room
+# glisson_sources(out ROOM [FOLDER folder] [EXCEPT regex] [ONLY regex]): the sources of a room
 function(glisson_sources out name)
   cmake_parse_arguments(arg "" "FOLDER;EXCEPT;ONLY" "" ${ARGN})
   if(NOT arg_FOLDER)
