@@ -27,7 +27,7 @@ SubmeshBody::SubmeshBody(const Body& body, std::span<const double> nodal_damping
       changer_(body, submeshes_, kernels_.lanes),
       forces_(body, submeshes_, records_, kernels_, options.precision_error), volumes_(body, submeshes_),
       memory_(body, submeshes_, records_, kernels_.lanes), stages_(options.drag_stages, submeshes_, records_, kernels_),
-      pool_(options.threads > 0 ? options.threads : threads_for(body.elements.size())) {
+      pool_(options.threads > 0 ? options.threads : detail::threads_for(body.elements.size())) {
   follow_layout(nodal_damping);
 }
 

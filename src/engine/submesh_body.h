@@ -18,13 +18,13 @@
 // With adaptive precision a submesh may go by its tissue's linear law: PrecisionChoice, in ElementForces, says which.
 #pragma once
 
+#include "base/task_pool.h"
 #include "engine/active_vertices.h"
 #include "engine/drag_stage_records.h"
 #include "engine/element_forces.h"
 #include "engine/maxwell_memory.h"
 #include "engine/moving_body.h"
 #include "engine/shared_volumes.h"
-#include "engine/task_pool.h"
 #include "engine/update/submesh_changer.h"
 
 namespace glisson::engine {
@@ -135,7 +135,7 @@ class SubmeshBody final : public MovingBody {
   SharedVolumes volumes_;
   MaxwellMemory memory_;
   DragStageRecords stages_;
-  TaskPool pool_;
+  detail::TaskPool pool_;
   std::vector<std::unique_ptr<SubmeshScratch>> scratch_;  ///< per thread
 
   LaneVector<float> slots_elastic_, slots_viscous_;  ///< force records

@@ -74,7 +74,7 @@ class HeatSimulation::Impl {
  public:
   Impl(TetMesh given, const std::map<int, ThermalTissue>& tissues, const HeatOptions& options)
       : mesh_(checked(std::move(given))), options_(checked(options)), body_(mesh_, checked(tissues)),
-        stepper_(body_, options_.threads > 0 ? options_.threads : heat::threads_for(body_.size())),
+        stepper_(body_, options_.threads > 0 ? options_.threads : detail::threads_for(body_.size())),
         held_(mesh_.vertices.size(), 0) {
     now_.temperature.assign(held_.size(), options.temperature);
     for (std::size_t i = 0; i < held_.size(); ++i) now_.heat.push_back(body_.state(i, options.temperature).heat);

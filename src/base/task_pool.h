@@ -8,7 +8,7 @@
 #include <functional>
 #include <memory>
 
-namespace glisson::engine {
+namespace glisson::detail {
 
 class TaskPool {
  public:
@@ -26,9 +26,9 @@ class TaskPool {
   std::unique_ptr<Arena> arena_;  ///< none for one thread
 };
 
-/// Threads that pay for a body of so many tets on this machine: one below kThreadingTets.
-int threads_for(std::size_t tets);
-/// Below this a second thread gains nothing (docs/engine.md, measured).
-inline constexpr std::size_t kThreadingTets = 4096;
+/// Threads that pay on this machine for so many parts of a body: one below kThreadingParts.
+int threads_for(std::size_t parts);
+/// Tets of the mechanics, vertices of heat. Below this a second thread gains nothing (docs/engine.md, measured for tets).
+inline constexpr std::size_t kThreadingParts = 4096;
 
-}  // namespace glisson::engine
+}  // namespace glisson::detail

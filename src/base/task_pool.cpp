@@ -1,4 +1,4 @@
-#include "engine/task_pool.h"
+#include "base/task_pool.h"
 
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/info.h>
@@ -12,7 +12,7 @@
 #include <vector>
 #endif
 
-namespace glisson::engine {
+namespace glisson::detail {
 
 /// oneTBB has a worker fewer than the machine has cores unless it is told otherwise.
 struct TaskPool::Arena {
@@ -57,6 +57,6 @@ void TaskPool::run(std::size_t n, const std::function<void(std::size_t, std::siz
 }
 #endif
 
-int threads_for(std::size_t tets) { return tets < kThreadingTets ? 1 : oneapi::tbb::info::default_concurrency(); }
+int threads_for(std::size_t parts) { return parts < kThreadingParts ? 1 : oneapi::tbb::info::default_concurrency(); }
 
-}  // namespace glisson::engine
+}  // namespace glisson::detail
