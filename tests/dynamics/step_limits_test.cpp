@@ -6,8 +6,9 @@
 #include <ostream>
 #include <random>
 
+#include "dynamics/pace/automatic_pace.h"
 #include "dynamics/press_deep.h"
-#include "dynamics/step/step_control.h"
+#include "dynamics/state/make_body.h"
 #include "glisson/instruments/motion.h"
 #include "support/bodies.h"
 
@@ -50,16 +51,21 @@ TEST(AutomaticStep, KeepsItsLengthWhereViscosityLimitsIt) {
       SimulationOptions options;
       options.exact_steps = false;
       const std::vector<double> rest{1.0};
-      StepControl control(body, gamma, Drag::lags, options, rest);
+      AutomaticPace pace(StepLimits(body, gamma, Drag::lags, options, rest), options);
+      BodyState state(body, options);
+      EngineInfo info;
+      const std::unique_ptr<MovingBody> moving = make_moving_body(body, gamma, options, info);
+      const ActiveKick kick(state);
       for (double r = 1.0; r < 30.0; r *= rise(random)) {
         std::vector<StiffElement> listed;
-        for (std::uint32_t e = 0; e < body.elements.size() && r > control.list_above()[0]; ++e)
+        for (std::uint32_t e = 0; e < body.elements.size() && r > pace.list_above()[0]; ++e)
           listed.push_back({e, r, r});
-        ASSERT_TRUE(control.accept(std::vector{r}, listed));
+        const std::vector<double> risen{r};
+        ASSERT_TRUE(pace.accept({risen, listed, kick, *moving}));
         const double exact = stable_step(body, std::vector{r}, gamma).step;
-        EXPECT_LE(control.stable_step(), exact * (1.0 + 1e-9)) << viscosity << ", " << damping << ", " << r;
+        EXPECT_LE(pace.stable_step(), exact * (1.0 + 1e-9)) << viscosity << ", " << damping << ", " << r;
         if (viscosity == 30.0 && r < 2.0) {
-          EXPECT_GE(control.stable_step(), 0.9 * exact) << damping << ", " << r;
+          EXPECT_GE(pace.stable_step(), 0.9 * exact) << damping << ", " << r;
         }
       }
     }

@@ -26,13 +26,13 @@ void require_stages_for(const Tissue& tissue, int stages) {
 
 ExplicitScheme::ExplicitScheme(Body body, const SimulationOptions& options, Drag drag)
     : Scheme(std::move(body), options), moving_(make_moving_body(state_.body, state_.gamma, options, info_)),
-      stiffening_(moving_->advance(0.0, {}, false).stiffening), masses_(state_),
-      control_(std::make_unique<StepControl>(state_.body, state_.gamma, drag, options, stiffening_)) {
+      stiffening_(moving_->advance(0.0, {}, false).stiffening), drag_(make_viscous_drag(state_)),
+      pace_(make_pace({state_, drag, ledger_}, stiffening_)) {
   for (const TissueBlock& block : state_.body.blocks) require_stages_for(block.tissue, options.drag_stages);
-  moving_->list_above(control_->list_above(), control_->single_limits());
+  moving_->list_above(pace_->list_above(), pace_->single_limits());
   if (!options.mesh_changes) return;
   moving_->apply({}, state_.changer().stars(), state_.gamma);
-  control_->prepare_changes(state_.changer().stars());
+  pace_->prepare_changes(state_.changer().stars());
 }
 
 const ExplicitScheme::StateCopy& ExplicitScheme::read_state() const {
@@ -62,6 +62,7 @@ void ExplicitScheme::watch(std::span<const std::uint32_t> vertices) {
 
 void ExplicitScheme::active_changed(std::span<const std::uint32_t> before) {
   kick_.follow(before, moving_->active());
+  drag_->follow(before, moving_->active());
   interactions_.find_places(moving_->active(), state_.body.vertex_count);
 }
 
@@ -82,34 +83,6 @@ void ExplicitScheme::bring_to_rest() {
   if (!std::ranges::equal(resting, moving_->resting(), {}, {}, &RestingVertex::vertex)) moving_->rest(resting);
 }
 
-/// Tells the body what supports and motions hold by now, for stages of drag.
-void ExplicitScheme::hold_in_stages() {
-  if (state_.options.drag_stages == 1) return;
-  std::vector<char> holding;
-  for (std::size_t c = 0; c < state_.base.size(); ++c) holding.push_back(state_.holds(c) ? 1 : 0);
-  if (told_ == holding) return;
-  held_components_ = state_.held_components();
-  moving_->hold_in_stages(held_components_);
-  told_ = std::move(holding);
-}
-
-/// Tells the body what interactions held in the last step and forces from outside then, for stages of drag.
-void ExplicitScheme::hold_rows_in_stages() {
-  if (state_.options.drag_stages == 1) return;
-  moving_->push_in_stages(kick_.outer());
-  if (held_rows_.empty()) return moving_->project_stages(nullptr);
-  inverse_mass_.clear();
-  for (const ActiveVertex& w : moving_->active()) {
-    const double m = state_.body.inertia(w.vertex);
-    Vec3d& inverse = inverse_mass_.emplace_back();
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      inverse[axis] = m > 0.0 && held_components_[3 * w.vertex + axis] == 0 ? 1.0 / m : 0.0;
-    }
-  }
-  stage_holds_.set(held_rows_, moving_->active(), inverse_mass_);
-  moving_->project_stages(stage_holds_.empty() ? nullptr : &stage_holds_);
-}
-
 std::vector<std::uint32_t> ExplicitScheme::active_vertices() const {
   std::vector<std::uint32_t> vertices;
   for (const ActiveVertex& w : moving_->active()) vertices.push_back(w.vertex);
@@ -119,12 +92,9 @@ std::vector<std::uint32_t> ExplicitScheme::active_vertices() const {
 void ExplicitScheme::take_state(std::span<const Vec3d> displacement, std::span<const Vec3d> velocity) {
   moving_->set_state(displacement, velocity);
   interactions_.state_set(displacement);
-  kick_.forget_outer();
-  held_rows_.clear();
-  control_->state_set(added());
-  masses_.state_set();
-  take_stiff_masses();
-  moving_->list_above(control_->list_above(), control_->single_limits());
+  drag_->state_set();
+  pace_->state_set(added(), *moving_);
+  moving_->list_above(pace_->list_above(), pace_->single_limits());
   take_stiffness(moving_->advance(0.0, {}, false));
   copy_is_current_ = false;
   if (!state_.options.track_energies) return;
@@ -163,13 +133,13 @@ void ExplicitScheme::attach(std::shared_ptr<Interaction> interaction, const Body
   if (state_.options.track_energies) ledger_.bring_in(0.0, interaction->energy());
   interactions_.add(std::move(interaction));
   interactions_.find_places(moving_->active(), state_.body.vertex_count);
-  control_->set_added(added());
+  pace_->set_added(added());
 }
 
 /// Interactions, springs, surfaces that loads follow.
 AddedBeside ExplicitScheme::added() {
   const double loads = state_.loads.squared_frequency(state_.body);
-  if (state_.options.mass_scaling != MassScalingKind::variable) {
+  if (!pace_->gives_mass()) {
     return {.squared_frequency = added_frequency() + loads, .with_mass = 0.0, .to_bear = {}};
   }
   to_bear_.clear();
@@ -179,26 +149,26 @@ AddedBeside ExplicitScheme::added() {
 
 void ExplicitScheme::loads_changed(bool may_refuse) {
   if (state_.loads.follows()) static_cast<void>(state_.loads_at(state_.time, displacement()));
-  control_->set_added(added());
-  const bool given = state_.options.step.has_value() && state_.options.enforce_stability;
-  if (!may_refuse || !given || control_->step() <= control_->stable_step()) return;
-  throw std::invalid_argument("load: with it, " + control_->too_large());
+  pace_->set_added(added());
+  if (!may_refuse || pace_->bears()) return;
+  throw std::invalid_argument("load: with it, " + pace_->too_large());
 }
 
 void ExplicitScheme::tell_change(const BodyView& body, std::span<const std::uint32_t> origins) {
   if (interactions_.empty()) return;
   interactions_.find_places(moving_->active(), state_.body.vertex_count);
   interactions_.body_changed(body, origins);
-  control_->set_added(added());
+  pace_->set_added(added());
 }
 
-void ExplicitScheme::book(double h, const KickWork& free) {
+void ExplicitScheme::book(double h, const Advance& seen) {
   KickWork work = kick_.work(moving_->active());
-  add(work.before, free.before);
-  add(work.after, free.after);
+  add(work.before, seen.work.before);
+  add(work.after, seen.work.after);
   add_interface(work);
-  ledger_.book(h, work.before, work.after, work.kinetic + free.kinetic, only_relaxes(state_.body));
+  ledger_.book(h, work.before, work.after, work.kinetic + seen.work.kinetic, only_relaxes(state_.body));
   if (!interactions().empty()) ledger_.store_in_instruments(tool_energy());
+  if (seen.brought_in != 0.0) ledger_.bring_in(0.0, seen.brought_in);
 }
 
 void ExplicitScheme::add_interface(KickWork& work) const {
@@ -214,30 +184,6 @@ void ExplicitScheme::take_stiffness(const Advance& seen) {
   stiff_ = seen.stiff;
 }
 
-/// Gives vertices the mass that their tets lack at the step of variable mass scaling.
-void ExplicitScheme::take_stiff_masses() {
-  const std::optional<std::span<const VertexMass>> wanted = control_->new_masses();
-  if (!wanted) return;
-  const double kinetic = masses_.take(*wanted, *moving_);
-  if (state_.options.track_energies) ledger_.bring_in(kinetic, 0.0);
-}
-
-/// How fast tets change shape whose changes count.
-std::span<const ShapeRate> ExplicitScheme::shape_rates() {
-  shape_rates_.clear();
-  if (!control_->may_be_violent()) return shape_rates_;
-  for (const StiffElement& stiff : stiff_) {
-    if (!control_->is_violent(stiff)) continue;
-    const Tet& t = state_.body.elements[stiff.element];
-    const Vec3d origin = moving_->velocity_of(t[0]);
-    std::array<Vec3d, 3> difference;
-    for (std::size_t a = 0; a < 3; ++a) difference[a] = moving_->velocity_of(t[a + 1]) - origin;
-    const double squared = squared_norm(displacement_gradient(state_.body.rest[stiff.element].s, difference));
-    shape_rates_.push_back({stiff, std::sqrt(squared)});
-  }
-  return shape_rates_;
-}
-
 bool ExplicitScheme::kick(double) {
   kick_.kick(moving_->active());
   kick_.impose_motions(moving_->active());
@@ -245,17 +191,12 @@ bool ExplicitScheme::kick(double) {
 }
 
 StepResult ExplicitScheme::step() {
-  if (state_.options.mass_scaling == MassScalingKind::variable) {
-    control_->take_inertia(masses_.weigh(kick_.outer_action(moving_->active()), *moving_));
-  }
-  if (!control_->accept(stiffening_, stiff_)) {
-    message_ = "tissue or tools have stiffened, and " + control_->too_large();
+  if (!pace_->accept({stiffening_, stiff_, kick_, *moving_})) {
+    message_ = "tissue or tools have stiffened, and " + pace_->too_large();
     return {StepStatus::step_too_large, {}, message_};
   }
-  take_stiff_masses();
-  control_->limit_shape_change(shape_rates());
-  moving_->list_above(control_->list_above(), control_->single_limits());
-  const double h = choose_step(control_->step());
+  moving_->list_above(pace_->list_above(), pace_->single_limits());
+  const double h = choose_step(pace_->step());
   if (!(state_.time + h > state_.time)) {
     return {StepStatus::step_too_large,
             {},
@@ -264,9 +205,8 @@ StepResult ExplicitScheme::step() {
   }
   take_hold(h);
   prepare_to_give_up();
-  hold_in_stages();
   begin_interactions(h);
-  hold_rows_in_stages();
+  drag_->begin(*moving_);
   const Advance& seen = moving_->advance(h, state_.gravity_at(state_.time), state_.options.track_energies);
   take_stiffness(seen);
   copy_is_current_ = false;
@@ -279,24 +219,23 @@ StepResult ExplicitScheme::step() {
   for (RestingVertex& r : moving_->resting()) r.force += kick_.gravity() * state_.body.masses[r.vertex];
   interactions_.begin(state_.time, h, moving_->active(), moving_->resting(), state_.body.rest_positions,
                       state_.options.track_energies);
-  if (state_.options.drag_stages > 1) kick_.remember_tissue(moving_->active());
+  drag_->tissue_pushed(moving_->active());
   interactions_.add_forces();
   if (!kick(h)) {
     message_ = why_given_up(h);
     return {StepStatus::not_converged, {}, message_};
   }
   constrain_interactions();
-  if (state_.options.drag_stages > 1) kick_.remember_outer(moving_->active()), interactions_.tell_held(held_rows_);
-  if (state_.options.track_energies) book(h, seen.work);
-  if (state_.options.track_energies && seen.brought_in != 0.0) ledger_.bring_in(0.0, seen.brought_in);
+  drag_->end(moving_->active(), kick_, interactions_);
+  if (state_.options.track_energies) book(h, seen);
   for (ActiveVertex& w : moving_->active()) w.displacement += w.velocity * h;
   moving_->place_active();
   copy_is_current_ = false;  // of what a callback asked for within the step
   state_.time += h;
   ++state_.steps;
-  masses_.step_made(h);
   tell_moved();
-  if (!interactions().empty() || state_.loads.depends_on_state()) control_->follow_added(added());
+  pace_->step_made(h);
+  if (!interactions().empty() || state_.loads.depends_on_state()) pace_->follow_added(added());
   return {seen.inverted.empty() ? StepStatus::ok : StepStatus::inverted, seen.inverted, {}};
 }
 
@@ -311,7 +250,7 @@ Vec3d ExplicitScheme::torque(ConstraintId constraint, const Vec3d& about) const 
 }
 
 void ExplicitScheme::take_body(Archive& ar) {
-  bool bounded = control_->follows_changes();
+  bool bounded = pace_->follows_changes();
   ar(bounded);
   if (!ar.reads() || moving_->supports_tissues()) {
     moving_->archive_layout(ar, state_.gamma);
@@ -324,7 +263,7 @@ void ExplicitScheme::take_body(Archive& ar) {
   if (!ar.reads()) return;
   info_ = info_of(*moving_, state_.body);
   copy_is_current_ = false;
-  control_->body_read(bounded ? &state_.changer().stars() : nullptr);
+  pace_->body_read(bounded ? &state_.changer().stars() : nullptr);
 }
 
 namespace {
@@ -338,7 +277,7 @@ struct SavedExplicitLayout {
 
 std::shared_ptr<const void> ExplicitScheme::save_layout() {
   return std::make_shared<const SavedExplicitLayout>(
-      SavedExplicitLayout{control_->follows_changes(), moving_->save_layout()});
+      SavedExplicitLayout{pace_->follows_changes(), moving_->save_layout()});
 }
 
 void ExplicitScheme::load_layout(const std::shared_ptr<const void>& layout) {
@@ -346,7 +285,7 @@ void ExplicitScheme::load_layout(const std::shared_ptr<const void>& layout) {
   if (!moving_->supports_tissues()) moving_ = make_moving_body(state_.body, state_.gamma, state_.options, info_);
   moving_->load_layout(saved.moving, state_.gamma);
   info_ = info_of(*moving_, state_.body);
-  control_->body_read(saved.follows_changes ? &state_.changer().stars() : nullptr);
+  pace_->body_read(saved.follows_changes ? &state_.changer().stars() : nullptr);
   active_changed({});
 }
 
@@ -359,7 +298,7 @@ void ExplicitScheme::act_on_only(std::span<const std::uint32_t> vertices) {
 }
 
 void ExplicitScheme::archive_motion(Archive& ar) {
-  told_.reset();
+  drag_->body_changed();
   std::vector<std::uint32_t> active = active_vertices();
   ar.all_below(active, state_.body.vertex_count);
   ar.all_below(held_, state_.body.vertex_count);
@@ -369,25 +308,25 @@ void ExplicitScheme::archive_motion(Archive& ar) {
   moving_->archive_state(ar, state_.body.vertex_count);
   copy_is_current_ = false;
   for (ActiveVertex& w : moving_->active()) ar(w.elastic, w.viscous);
-  masses_.archive(ar, *moving_);
   ar.same_size(stiffening_);
   ar(kick_, stiff_, ledger_);
   for (const StiffElement& s : stiff_) ar.check(s.element < state_.body.elements.size());
-  ar(*control_, interactions_);
-  if (state_.options.drag_stages > 1) ar(held_rows_);
+  pace_->archive(ar, *moving_);
+  ar(interactions_);
+  drag_->archive(ar, active.size());
   if (!ar.reads()) return;
   bring_to_rest();
   const std::vector<std::uint32_t> named = interactions_.named();
   ar.check(std::includes(active.begin(), active.end(), held_.begin(), held_.end()));
   ar.check(std::includes(active.begin(), active.end(), named.begin(), named.end()));
-  moving_->list_above(control_->list_above(), control_->single_limits());
-  control_->added_read(added());
+  moving_->list_above(pace_->list_above(), pace_->single_limits());
+  pace_->added_read(added());
 }
 
 void ExplicitScheme::take_over(const BodyChange& change) {
-  told_.reset();
+  drag_->body_changed();
   moving_->apply(change, state_.changer().stars(), state_.gamma);
-  control_->mesh_changed(change, state_.changer().stars());
+  pace_->mesh_changed(change, state_.changer().stars());
   copy_is_current_ = false;
 }
 
@@ -409,7 +348,7 @@ void ExplicitScheme::build_anew(const TissueChange& change) {
 
 /// Brings other tissues into the body; what is told of the last kick stays.
 void ExplicitScheme::follow_tissues(const TissueChange& change) {
-  told_.reset();
+  drag_->body_changed();
   const std::vector<ActiveVertex> told(moving_->active().begin(), moving_->active().end());
   if (moving_->supports_tissues()) {
     moving_->tissues_changed(change.blocks, state_.gamma);
@@ -424,7 +363,7 @@ void ExplicitScheme::follow_tissues(const TissueChange& change) {
     Archive past(change.past);
     moving_->archive_past(past);
   }
-  moving_->list_above(control_->list_above(), control_->single_limits());
+  moving_->list_above(pace_->list_above(), pace_->single_limits());
   take_stiffness(moving_->advance(0.0, {}, false));
   std::copy(told.begin(), told.end(), moving_->active().begin());
   copy_is_current_ = false;
@@ -445,13 +384,13 @@ void ExplicitScheme::take_tissues(const TissueChange& change) {
   follow_tissues(change);
   const std::span<const Vec3d> u = displacement();
   const bool undeformed = std::all_of(u.begin(), u.end(), [](const Vec3d& d) { return d == Vec3d{}; });
-  control_->tissues_changed(stiffening_, undeformed);
+  pace_->tissues_changed(stiffening_, undeformed);
   stiff_.clear();  // the level of the blocks is above all of them now
-  moving_->list_above(control_->list_above(), control_->single_limits());
+  moving_->list_above(pace_->list_above(), pace_->single_limits());
 }
 
 void ExplicitScheme::follow(std::span<const std::uint32_t> origins, std::uint32_t first_new) {
-  told_.reset();
+  drag_->body_changed();
   std::vector<std::uint32_t> followers;
   const std::size_t held = held_.size();
   for (std::uint32_t i = 0; i < origins.size(); ++i) {

@@ -19,13 +19,12 @@
 #include <string>
 #include <vector>
 
-#include "dynamics/schemes/active_kick.h"
+#include "dynamics/pace/pace.h"
 #include "dynamics/schemes/scheme.h"
-#include "dynamics/schemes/stiff_masses.h"
+#include "dynamics/schemes/viscous_drag.h"
+#include "dynamics/state/active_kick.h"
 #include "dynamics/state/interactions.h"
-#include "dynamics/step/step_control.h"
 #include "engine/moving_body.h"
-#include "engine/stage_holds.h"
 
 namespace glisson {
 
@@ -43,8 +42,8 @@ class ExplicitScheme : public Scheme {
       : ExplicitScheme(std::move(body), options, options.drag_stages > 1 ? Drag::in_stages : Drag::lags) {}
 
   StepResult step() override;
-  double step_size() const override { return control_->step(); }
-  double stable_step() const override { return control_->stable_step(); }
+  double step_size() const override { return pace_->step(); }
+  double stable_step() const override { return pace_->stable_step(); }
   double force_time() const override { return kick_.time(); }
   std::span<const Vec3d> displacement() const override { return read_state().displacement; }
   std::span<const Vec3d> velocity() const override { return read_state().velocity; }
@@ -100,11 +99,9 @@ class ExplicitScheme : public Scheme {
   void active_changed(std::span<const std::uint32_t> before);
   void let_go();
   void bring_to_rest();
-  void hold_in_stages();
-  void hold_rows_in_stages();
   void begin_interactions(double h);
   /// Interactions are others now.
-  void follow_interactions() { control_->set_added(added()); }
+  void follow_interactions() { pace_->set_added(added()); }
 
   std::unique_ptr<MovingBody> moving_;
   ActiveKick kick_{state_};
@@ -119,26 +116,17 @@ class ExplicitScheme : public Scheme {
   const StateCopy& read_state() const;
   void follow_tissues(const TissueChange& change);
   void build_anew(const TissueChange& change);
-  std::span<const ShapeRate> shape_rates();
   void take_stiffness(const Advance& seen);
-  void take_stiff_masses();
   std::vector<std::uint32_t> active_vertices() const;
   AddedBeside added();
-  void book(double h, const KickWork& free);
+  void book(double h, const Advance& seen);
 
   std::vector<std::uint32_t> held_;  ///< vertices of supports, motions and loads, ascending
   std::vector<double> stiffening_;   ///< per tissue block, at the last evaluation
   std::vector<StiffElement> stiff_;  ///< what was listed then
-  std::vector<ShapeRate> shape_rates_;
   std::vector<VertexStiffness> to_bear_;
-  StiffMasses masses_;
-  /// Per constraint: whether stages of drag know that it holds; none: the body has to be told anew.
-  std::optional<std::vector<char>> told_;
-  std::vector<char> held_components_;  ///< 3 a vertex: as they know it
-  HeldRows held_rows_;                 ///< what interactions held in the last step, for stages of drag
-  std::vector<Vec3d> inverse_mass_;    ///< of the active vertices, for them [1/kg]
-  engine::StageHolds stage_holds_;
-  std::unique_ptr<StepControl> control_;
+  std::unique_ptr<ViscousDrag> drag_;
+  std::unique_ptr<Pace> pace_;
   // Filled when it is asked for first, by whichever thread does.
   mutable StateCopy copy_;
   mutable std::atomic<bool> copy_is_current_{false};

@@ -5,7 +5,7 @@
 //               └─▶ Changer (changer.h): what is removed, split, exchanged
 //
 // A scheme is made of parts: the body state (body_state.h), a ledger of energies (energy_ledger.h), and, where its steps are
-// not stable at any length, a control of the step (step_control.h). A new one is a file with its class, whose kInfo says what it
+// not stable at any length, a pace (pace/pace.h). A new one is a file with its class, whose kInfo says what it
 // can do, and a line in make_scheme.cpp.
 #pragma once
 

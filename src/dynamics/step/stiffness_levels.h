@@ -1,6 +1,6 @@
 // stiffness_levels.h — single tets that are stiffer than the level h* is known for, and what they take off the step.
 //
-// h* is known for one level L of stiffness per tissue block (step_control.h). A tet above it gets a level ℓ of its own, and n of
+// h* is known for one level L of stiffness per tissue block (step_limits.h). A tet above it gets a level ℓ of its own, and n of
 // its norm (element/stiff_element.h). With K_e what it adds to the stiffness at rest, m = λ_max of its tangent there,
 //   tangent ≤ L K_e + x V m ‖Σ x_a ⊗ s_a‖²,   x = min(ℓ − L, n),
 // and the second part is held against the masses of its vertices alone. Tets that share a vertex divide its mass by what each

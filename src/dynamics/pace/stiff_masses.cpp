@@ -1,4 +1,4 @@
-#include "dynamics/schemes/stiff_masses.h"
+#include "dynamics/pace/stiff_masses.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "dynamics/schemes/active_kick.h"
+#include "dynamics/state/active_kick.h"
 
 #include <algorithm>
 #include <array>
@@ -20,18 +20,7 @@ Vec3d inverse_inertia(const ActiveKick::Kicked& k, double h) {
 }  // namespace
 
 void ActiveKick::follow(std::span<const std::uint32_t> before, std::span<const ActiveVertex> active) {
-  const auto take_over = [&](auto& list, auto& now) {
-    now.clear();
-    std::size_t k = 0;
-    for (const ActiveVertex& w : active) {
-      while (k < before.size() && before[k] < w.vertex) ++k;
-      const bool known = k < std::min(before.size(), list.size()) && before[k] == w.vertex;
-      known ? now.push_back(list[k]) : now.push_back({});
-    }
-    std::swap(list, now);
-  };
-  take_over(kicked_, kicked_before_);
-  if (!outer_.empty()) take_over(outer_, outer_before_);
+  follow_active(before, active, kicked_, kicked_before_);
   const std::span<const Constraint> constraints = state_.constraints.all();
   places_.resize(constraints.size());
   for (std::size_t c = 0; c < places_.size(); ++c) {
@@ -116,18 +105,6 @@ std::span<const Vec3d> ActiveKick::mobility() {
     }
   }
   return mobility_;
-}
-
-void ActiveKick::remember_tissue(std::span<const ActiveVertex> active) {
-  tissue_.clear();
-  for (const ActiveVertex& w : active) tissue_.push_back(w.elastic + w.viscous);
-}
-
-void ActiveKick::remember_outer(std::span<const ActiveVertex> active) {
-  outer_.clear();
-  for (std::size_t k = 0; k < active.size(); ++k) {
-    outer_.push_back(active[k].elastic + active[k].viscous - tissue_[k] + kicked_[k].load + kicked_[k].contact);
-  }
 }
 
 void ActiveKick::push(std::span<const Vec3d> impulses) {
@@ -227,11 +204,7 @@ void ActiveKick::add_interface(std::span<const ActiveVertex> active, const Inter
 
 void ActiveKick::archive(Archive& ar) {
   ar.same_size(kicked_);
-  auto remembered = static_cast<std::uint32_t>(outer_.size());
-  ar(step_, time_, gravity_, remembered);
-  ar.check(remembered == 0 || remembered == kicked_.size());
-  outer_.resize(remembered);
-  ar.same_size(outer_);
+  ar(step_, time_, gravity_);
 }
 
 }  // namespace glisson

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "dynamics/schemes/active_kick.h"
+#include "dynamics/state/active_kick.h"
 #include "dynamics/state/body_state.h"
 #include "dynamics/step/mass_levels.h"
 #include "engine/moving_body.h"

@@ -5,13 +5,31 @@
 // The body moves all other vertices (engine/moving_body.h).
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "dynamics/state/body_state.h"
 #include "engine/moving_body.h"
 
 namespace glisson {
+
+/// Brings a list, one a vertex that was active, to those that are now; 0 for one that was not. @param before, active  ascending
+template <class T>
+void follow_active(std::span<const std::uint32_t> before, std::span<const ActiveVertex> active, std::vector<T>& list,
+                   std::vector<T>& memory) {
+  memory.clear();
+  std::size_t k = 0;
+  for (const ActiveVertex& w : active) {
+    while (k < before.size() && before[k] < w.vertex) ++k;
+    const bool known = k < std::min(before.size(), list.size()) && before[k] == w.vertex;
+    known ? memory.push_back(list[k]) : memory.push_back({});
+  }
+  std::swap(list, memory);
+}
 
 class ActiveKick {
  public:
@@ -47,26 +65,17 @@ class ActiveKick {
   /// What interactions exerted [N s].
   void push(std::span<const Vec3d> impulses);
 
-  /// Keeps the tissue's own forces, before interactions add theirs; then what loads and interactions exerted beside them.
-  void remember_tissue(std::span<const ActiveVertex> active);
-  void remember_outer(std::span<const ActiveVertex> active);
-  /// The state was set from outside: what acted on the last one is forgotten.
-  void forget_outer() { outer_.clear(); }
-  /// What was remembered, per active vertex, 0 for one that was not active then; empty: nothing was [N].
-  std::span<const Vec3d> outer() const { return outer_; }
-
   /// The last kick, to go back to; with the same active vertices.
   struct Kept {
     std::vector<Kicked> kicked;
-    std::vector<Vec3d> outer;
     Vec3d gravity;
     double step = 0.0, time = 0.0;
   };
   void keep_last(Kept& kept) const {
-    kept.kicked = kicked_, kept.outer = outer_, kept.gravity = gravity_, kept.step = step_, kept.time = time_;
+    kept.kicked = kicked_, kept.gravity = gravity_, kept.step = step_, kept.time = time_;
   }
   void go_back(const Kept& kept) {
-    kicked_ = kept.kicked, outer_ = kept.outer, gravity_ = kept.gravity, step_ = kept.step, time_ = kept.time;
+    kicked_ = kept.kicked, gravity_ = kept.gravity, step_ = kept.step, time_ = kept.time;
   }
 
   /// What a constraint exerted at the last kick.
@@ -99,7 +108,7 @@ class ActiveKick {
   std::vector<Kicked> kicked_;                      ///< per active vertex
   std::vector<Kicked> kicked_before_;               ///< memory for follow()
   std::vector<std::vector<std::uint32_t>> places_;  ///< per constraint: where its vertices are among those active
-  std::vector<Vec3d> mobility_, tissue_, outer_, outer_before_;
+  std::vector<Vec3d> mobility_;
   std::vector<Vec3d> displacement_;  ///< of active vertices, by vertex, for loads that ask for it [m]
   Vec3d gravity_{};
   double step_ = 0.0, time_ = 0.0;
