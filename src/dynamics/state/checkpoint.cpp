@@ -11,7 +11,7 @@ namespace glisson {
 namespace {
 
 constexpr std::uint64_t kHashPrime = 1099511628211ULL;
-constexpr std::string_view kMagic = "GLISSON0";
+constexpr std::string_view kMagic = "GLISSON1";
 constexpr std::size_t kHead = kMagic.size() + sizeof(std::uint64_t), kTail = sizeof(std::uint64_t);
 
 /// FNV-1a, eight bytes at a time; the last ones are filled up by zeros.
@@ -50,7 +50,7 @@ Archive read_checkpoint(std::istream& in) {
   const std::string all = std::move(file).str();
   if (all.size() < kHead || all.compare(0, kMagic.size(), kMagic) != 0) {
     throw std::runtime_error("checkpoint: this is not a checkpoint that this program reads; it does not begin with " +
-                             std::string(kMagic));
+                             std::string(kMagic) + ", as those of this version do");
   }
   std::uint64_t size = 0, sum = 0;
   Archive head(all.substr(kMagic.size(), sizeof(size)));

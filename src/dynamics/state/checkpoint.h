@@ -1,6 +1,6 @@
 // checkpoint.h — the file of a checkpoint.
 //
-//   "GLISSON0" │ size of the contents u64 │ contents (glisson/archive.h) │ their checksum u64        all little-endian
+//   "GLISSON1" │ size of the contents u64 │ contents (glisson/archive.h) │ their checksum u64        all little-endian
 //
 // What is not in it: mesh, tissues, options, motions and loads of the start, which the one who loads has made anew, and checks
 // by fingerprints that they are the same.
