@@ -63,7 +63,7 @@ Texts mass(const StepCase& c);
 Texts limits(const StepCase& c);
 /// Where viscosity keeps an explicit step short, what makes a simulated second cheapest: stages of the viscous force, `semi_implicit` or
 /// long steps.
-Texts viscosity(const StepCase& c);
+Texts viscous(const StepCase& c);
 /// Where tools move by next to nothing in a step, that mass while tissue moves evenly makes steps longer.
 Texts slow(const StepCase& c);
 /// Tools that are faster than the waves that take tissue out of their way.

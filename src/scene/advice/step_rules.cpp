@@ -109,7 +109,7 @@ Texts limits(const StepCase& c) {
             digits(2, growth)})};
 }
 
-Texts viscosity(const StepCase& c) {
+Texts viscous(const StepCase& c) {
   if (!std::isfinite(c.rest.stable_step_s) || !drags_in_one_stage(c.variant)) return {};
   c.time.begin("the step of " + c.variant.name + " with other treatments of the viscous force");
   ViscousCure best;
