@@ -195,7 +195,7 @@ TEST_F(Commands, CheckTellsWhereMassMakesStepsLonger) {
 // nothing is left to say.
 TEST_F(Commands, CheckTellsWhereStagesOfViscosityPay) {
   const std::string scene = write("s.toml", small_scene());
-  const std::string viscous = "tissue.viscosity_Pa_s=100";
+  const std::string viscous = "tissue.viscosity_Pa_s=10";
   const auto stable = [](const Outcome& check) {
     std::smatch found;
     return std::regex_search(check.out, found, std::regex(R"(stable below ([\d.e-]+) s)")) ? std::stod(found[1]) : 0.0;

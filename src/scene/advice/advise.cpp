@@ -21,7 +21,7 @@ constexpr Rule<const Variant&, const InstrumentSpec&, const TetMesh&> kInstrumen
     {"misses", warning, misses}, {"edge", warning, edge}, {"zone", warning, zone}, {"coarse", warning, coarse}};
 constexpr Rule<const StepCase&> kStepRules[] = {{"branches", remark, branches}, {"corners", warning, corners},
                                                 {"mass", remark, mass},         {"limits", remark, limits},
-                                                {"stages", remark, stages},     {"slow", remark, slow},
+                                                {"viscous", remark, viscous},   {"slow", remark, slow},
                                                 {"fast", warning, fast},        {"adaptive", remark, adaptive}};
 
 /// Collects what rules say, with what they say it of.

@@ -61,8 +61,9 @@ Texts corners(const StepCase& c);
 Texts mass(const StepCase& c);
 /// Which few tets keep an explicit step short, and what mass for them alone gives.
 Texts limits(const StepCase& c);
-/// Where viscosity keeps an explicit step short, the stages of the viscous force that make a simulated second cheapest.
-Texts stages(const StepCase& c);
+/// Where viscosity keeps an explicit step short, what makes a simulated second cheapest: stages of the viscous force, `semi_implicit` or
+/// long steps.
+Texts viscous(const StepCase& c);
 /// Where tools move by next to nothing in a step, that mass while tissue moves evenly makes steps longer.
 Texts slow(const StepCase& c);
 /// Tools that are faster than the waves that take tissue out of their way.
