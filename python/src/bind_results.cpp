@@ -9,6 +9,7 @@
 #include "report/force_table.h"
 #include "report/json_text.h"
 #include "report/output_file.h"
+#include "report/output_folder.h"
 #include "report/summary_json.h"
 
 namespace glisson::python {
@@ -221,6 +222,30 @@ const Variant& variant_of(const RunResult& r) {
   return *r.variant;
 }
 
+/// A folder of results while it is written, as the program holds it: until `release`.
+class HeldFolder {
+ public:
+  HeldFolder(const std::filesystem::path& folder, const std::function<void(const std::string&)>& warn) {
+    try {
+      held_ = std::make_unique<OutputFolder>(folder, warn, "give another folder as `out`");
+    } catch (const std::invalid_argument& refused) {
+      throw std::runtime_error(refused.what());
+    }
+  }
+  void release() { held_.reset(); }
+
+ private:
+  std::unique_ptr<OutputFolder> held_;
+};
+
+void bind_folders(nb::module_& m) {
+  nb::class_<HeldFolder>(m, "HeldFolder",
+                         "A folder of results that no other process writes to, nor inside it or around it.")
+      .def(nb::init<const std::filesystem::path&, const std::function<void(const std::string&)>&>(), "folder"_a,
+           "warn"_a)
+      .def("release", &HeldFolder::release);
+}
+
 void bind_tables(nb::module_& m) {
   nb::class_<Table>(m, "Table", "Columns of numbers, as in a .csv of a run: table[\"force_N\"].")
       .def_ro("columns", &Table::columns, "Names, with their units")
@@ -266,6 +291,7 @@ void bind_tables(nb::module_& m) {
 
 void bind_results(nb::module_& m) {
   bind_tables(m);
+  bind_folders(m);
   nb::class_<StopFlag>(m, "StopFlag", "Ends runs from another thread, at their next step.")
       .def(nb::init<>())
       .def("stop", [](StopFlag& flag) { flag.set = true; });
