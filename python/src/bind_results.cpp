@@ -79,6 +79,9 @@ class Recorder : public RunObserver {
   Recorder(RunResult& result, nb::object on_sample, bool frames, std::shared_ptr<StopFlag> stop)
       : result_(result), on_sample_(std::move(on_sample)), frames_(frames), stop_(std::move(stop)) {}
 
+  void on_start(const Variant& variant, const Simulation& simulation) override {
+    advice_ = advise_at_rest(variant, simulation);
+  }
   void on_built(const BuiltVariant& built) override {
     table_.emplace(*result_.variant, built);
     instruments_ = built.instruments;
@@ -120,7 +123,7 @@ class Recorder : public RunObserver {
   void on_end(const RunSummary& summary) override {
     const Variant& variant = *result_.variant;
     const std::string scene = std::filesystem::path(variant.scene_name).stem().string();
-    result_.summary = json_text(summary_json(summary, variant, scene, 1, rejected_poses(instruments_)));
+    result_.summary = json_text(summary_json(summary, variant, scene, 1, rejected_poses(instruments_), advice_));
     result_.end = word_of(summary.end);
     result_.trouble = trouble_text(summary);
   }
@@ -136,6 +139,7 @@ class Recorder : public RunObserver {
   RunResult& result_;
   std::optional<ForceTable> table_;
   std::vector<std::shared_ptr<Instrument>> instruments_;
+  std::vector<Advice> advice_;
   nb::object on_sample_;
   bool frames_;
   std::shared_ptr<StopFlag> stop_;
