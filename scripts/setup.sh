@@ -1,7 +1,10 @@
 #!/usr/bin/env bash
 # setup.sh SECTION — makes sure that the packages of scripts/packages.txt are there, up to SECTION
 # (run, python, plot, test or check). Installs only what is missing: as root, else through sudo; where neither is to
-# be had it prints the one command for an administrator and exits 1. GLISSON_SKIP_SETUP=1 skips all of it.
+# be had it prints the one command for an administrator and exits 1. GLISSON_SKIP_SETUP=1 skips the packages.
+#
+# A virtual environment `venv` belongs to the place where it was made: in a tree that was moved or copied its pip is missing or installs
+# into the old place. Such a one is removed, which is said, as configure.sh does with build folders.
 set -euo pipefail
 
 readonly here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
@@ -80,9 +83,28 @@ install_packages() {
   rm -f "$log"
 }
 
+# The place that the programs of a virtual environment name in their first lines, `#!PLACE/bin/python3` or, where that is too long
+# or has blanks, `'''exec' "PLACE/bin/python3" …`; empty where it has no pip.
+place_of() {
+  [ -r "$1/bin/pip" ] && sed -n '1,2{s,^[^/]*exec. "*\(/.*\)/bin/python.*,\1,p;t;s,^#!\(/.*\)/bin/python.*,\1,p}' "$1/bin/pip"
+}
+
+leave_moved_environment() {
+  local venv="${here%/*}/venv" made_in
+  [ -f "$venv/pyvenv.cfg" ] || return 0
+  made_in="$(place_of "$venv")" || return 0
+  [ -n "$made_in" ] || return 0
+  if ! [ "$made_in" -ef "$venv" ]; then
+    say "venv was made in $made_in, and this tree is in ${here%/*}: it was moved or copied. venv is removed;" \
+      "make it anew: python3 -m venv venv && venv/bin/pip install '.[plot]'" >&2
+    rm -rf "$venv"
+  fi
+}
+
 main() {
   local section="${1:-run}" system packages absent
   case "$section" in run | python | plot | test | check) ;; *) fail "unknown section '$section': run, python, plot, test or check" ;; esac
+  leave_moved_environment
   [ "${GLISSON_SKIP_SETUP:-0}" = 1 ] && return
   system="$(system)"
   mapfile -t packages < <(wanted "$section" "${system%%:*}")

@@ -97,11 +97,11 @@ class Archive {
       auto number = static_cast<std::uint8_t>(value);
       part(number);
       check(number < 2);
-      value = number != 0;
+      if (reads_) value = number != 0;  // writing changes nothing: others may read meanwhile
     } else if constexpr (HasWords<T>) {
       auto number = static_cast<std::uint8_t>(value);
       part(number);
-      value = static_cast<T>(number);
+      if (reads_) value = static_cast<T>(number);
       check(!word_of(value).empty());
     } else if constexpr (std::is_arithmetic_v<T>) {
       auto bytes = std::bit_cast<std::array<char, sizeof(T)>>(value);

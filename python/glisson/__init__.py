@@ -31,5 +31,5 @@ from .tissues import MaterialCurve, TorsionCurve, material_test, oscillation, ta
 
 __version__ = VERSION
 # What the functions above are made of.
-_INNER = {"annotations", "check_variants", "read_scene", "read_scene_text", "run_material_test", "run_oscillation", "run_torsion", "run_variant", "TorsionOptions"}
+_INNER = {"annotations", "HeldFolder", "check_variants", "read_scene", "read_scene_text", "run_material_test", "run_oscillation", "run_torsion", "run_variant", "TorsionOptions"}
 __all__ = [name for name in dir() if not name.startswith("_") and name not in _INNER]

@@ -41,6 +41,7 @@ def run(
     :param on_sample: called with the variant's name and a line of forces.csv at each sample
     :param frames: whether to keep the displacement of every frame
     :param out: folder to write <variant>/forces.csv to, with the bytes that `glisson run` writes
+    :raises RuntimeError: where another run or study writes into `out`, inside it or around it; nothing is written then
 
     >>> import glisson
     >>> curves = glisson.run(glisson.scenes_folder() / "paper" / "figure2.toml", variants=["linear"],
@@ -62,8 +63,7 @@ def run(
         if result.trouble:
             warnings.warn(f"{result.name}: {result.trouble}", RuntimeWarning, stacklevel=2)
     if out is not None:
-        Path(out).mkdir(parents=True, exist_ok=True)
-        with alone_in(Path(out)):
+        with alone_in(out):
             _write(by_name, Path(out))
     return by_name
 

@@ -99,7 +99,7 @@ def sweep(
     :raises SweepError: naming the points that could not be run, with the reasons: after all others are done, or at once where
         the measure or the first points failed
     :raises ValueError: for a measure that processes cannot import
-    :raises RuntimeError: where another study writes into the folder; nothing is changed then
+    :raises RuntimeError: where another run or study writes into the folder, inside it or around it; nothing is changed then
     """
     parquet = need("pyarrow.parquet", "pyarrow", "sweep")
     if give_up is not None and give_up < 1:
@@ -108,7 +108,6 @@ def sweep(
         _require_importable(measure)
     tasks = _tasks(scene, points, variants, measure)
     folder = Path(out)
-    folder.mkdir(parents=True, exist_ok=True)
     with alone_in(folder):
         return _sweep(parquet, folder, tasks, workers, client, attempts, give_up, progress)
 

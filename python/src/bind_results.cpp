@@ -9,6 +9,7 @@
 #include "report/force_table.h"
 #include "report/json_text.h"
 #include "report/output_file.h"
+#include "report/output_folder.h"
 #include "report/summary_json.h"
 
 namespace glisson::python {
@@ -78,6 +79,9 @@ class Recorder : public RunObserver {
   Recorder(RunResult& result, nb::object on_sample, bool frames, std::shared_ptr<StopFlag> stop)
       : result_(result), on_sample_(std::move(on_sample)), frames_(frames), stop_(std::move(stop)) {}
 
+  void on_start(const Variant& variant, const Simulation& simulation) override {
+    advice_ = advise_at_rest(variant, simulation);
+  }
   void on_built(const BuiltVariant& built) override {
     table_.emplace(*result_.variant, built);
     instruments_ = built.instruments;
@@ -119,7 +123,7 @@ class Recorder : public RunObserver {
   void on_end(const RunSummary& summary) override {
     const Variant& variant = *result_.variant;
     const std::string scene = std::filesystem::path(variant.scene_name).stem().string();
-    result_.summary = json_text(summary_json(summary, variant, scene, 1, rejected_poses(instruments_)));
+    result_.summary = json_text(summary_json(summary, variant, scene, 1, rejected_poses(instruments_), advice_));
     result_.end = word_of(summary.end);
     result_.trouble = trouble_text(summary);
   }
@@ -135,6 +139,7 @@ class Recorder : public RunObserver {
   RunResult& result_;
   std::optional<ForceTable> table_;
   std::vector<std::shared_ptr<Instrument>> instruments_;
+  std::vector<Advice> advice_;
   nb::object on_sample_;
   bool frames_;
   std::shared_ptr<StopFlag> stop_;
@@ -221,6 +226,30 @@ const Variant& variant_of(const RunResult& r) {
   return *r.variant;
 }
 
+/// A folder of results while it is written, as the program holds it: until `release`.
+class HeldFolder {
+ public:
+  HeldFolder(const std::filesystem::path& folder, const std::function<void(const std::string&)>& warn) {
+    try {
+      held_ = std::make_unique<OutputFolder>(folder, warn, "give another folder as `out`");
+    } catch (const std::invalid_argument& refused) {
+      throw std::runtime_error(refused.what());
+    }
+  }
+  void release() { held_.reset(); }
+
+ private:
+  std::unique_ptr<OutputFolder> held_;
+};
+
+void bind_folders(nb::module_& m) {
+  nb::class_<HeldFolder>(m, "HeldFolder",
+                         "A folder of results that no other process writes to, nor inside it or around it.")
+      .def(nb::init<const std::filesystem::path&, const std::function<void(const std::string&)>&>(), "folder"_a,
+           "warn"_a)
+      .def("release", &HeldFolder::release);
+}
+
 void bind_tables(nb::module_& m) {
   nb::class_<Table>(m, "Table", "Columns of numbers, as in a .csv of a run: table[\"force_N\"].")
       .def_ro("columns", &Table::columns, "Names, with their units")
@@ -266,6 +295,7 @@ void bind_tables(nb::module_& m) {
 
 void bind_results(nb::module_& m) {
   bind_tables(m);
+  bind_folders(m);
   nb::class_<StopFlag>(m, "StopFlag", "Ends runs from another thread, at their next step.")
       .def(nb::init<>())
       .def("stop", [](StopFlag& flag) { flag.set = true; });

@@ -49,7 +49,7 @@ void InversionSearch::archive(Archive& ar) {
   std::vector<std::uint8_t> looked;
   for (const Looked l : looked_) looked.push_back(static_cast<std::uint8_t>(l));
   ar.all_below(looked, 1 + static_cast<std::size_t>(Looked::inverted));
-  for (std::size_t p = 0; p < looked_.size(); ++p) {
+  for (std::size_t p = 0; ar.reads() && p < looked_.size(); ++p) {
     looked_[p] = looked.size() == looked_.size() ? static_cast<Looked>(looked[p]) : Looked::inverted;
   }
 }

@@ -242,7 +242,9 @@ void MaxwellMemory::archive_stresses(Archive& ar) {
     for (Submesh& part : submeshes_.parts) {
       const TissueBlock& block = body_.blocks[part.block];
       if (block.tissue.maxwell.empty()) continue;
-      part.linear.stress.resize(part.chains.element.size() * 6, 0.0F);
+      const std::size_t numbers = part.chains.element.size() * 6;
+      if (ar.reads()) part.linear.stress.resize(numbers, 0.0F);
+      if (part.linear.stress.size() != numbers) continue;  // never by the linear law: all 0
       for_linear_memory(part, block.tissue, lanes_, [&](std::uint32_t e, const auto&, const auto& number) {
         for (std::size_t i = 0; i < 6; ++i) visit(*number(i), stress[part.block][(e - block.begin) * 6 + i]);
       });

@@ -266,7 +266,7 @@ void SubmeshBody::archive_precision(Archive& ar) {
   ar.same_size(share), ar.same_size(wanted);
   bool accounted = forces_.accounted();
   ar(since, brought_in_, accounted);
-  forces_.set_accounted(accounted);
+  if (ar.reads()) forces_.set_accounted(accounted);
   ar.check(since >= 0.0);
   memory_.archive_stresses(ar);
   if (ar.reads()) {

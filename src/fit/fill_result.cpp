@@ -206,7 +206,8 @@ Profiles profiles_of(const LawSearch& search, const Covariance& covariance, cons
   ProfileOptions how;
   how.stop = options.stop;
   // a specimen of one tissue costs less than what would stand in for it
-  local = search.ladder().taken().name == "specimen" ? nullptr : LocalProblem::about(search.problem(), covariance);
+  local =
+      search.ladder().taken().kind == RungKind::specimen ? nullptr : LocalProblem::about(search.problem(), covariance);
   if (local) {
     Profiles found = profiles(local->problem(), search.optimum(), covariance, how);
     if (stopped(options) || local->holds(found, search.optimum().cost)) return found;
@@ -291,7 +292,7 @@ namespace {
 /// What a fit to each test alone predicts of the others: where there are several kinds, and runs cost little.
 void fill_tests_alone(const LawSearch& search, const FitCurves& curves, const FitRun& options, FitResult& result) {
   constexpr int kStarts = 6;
-  const bool cheap = search.ladder().taken().name == "specimen";
+  const bool cheap = search.ladder().taken().kind == RungKind::specimen;
   if (!cheap || result.tests.size() < 2 || of_one_kind(curves.curves) || stopped(options)) return;
   fill_alone(result.tests, curves.curves, search.problem(), search.optimum().scaled, kStarts, search.descent());
 }

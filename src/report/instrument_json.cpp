@@ -50,15 +50,21 @@ json instrument_place_json(const Instrument& instrument) {
   return {{"points", std::move(line)}, {"axes", std::move(axes)}};
 }
 
-json vessel_json(const ContainerOptions& container, std::span<const Vec3d> vertices) {
-  constexpr double kAbove = 1.15;  // the body, where the wall has no end
+double drawn_wall_height(const Vec3d& floor, const Vec3d& up, std::span<const Vec3d> vertices) {
+  constexpr double kAbove = 1.15;  // the body
   double top = 0.0;
+  for (const Vec3d& x : vertices) top = std::max(top, dot(x - floor, up));
+  return kAbove * top;
+}
+
+json vessel_json(const ContainerOptions& container, std::span<const Vec3d> vertices) {
   const Mat3d& axes = container.pose.axes;
   const Vec3d up{axes(0, 2), axes(1, 2), axes(2, 2)};
-  for (const Vec3d& x : vertices) top = std::max(top, dot(x - container.pose.position, up));
   json form = std::visit(
       [&](const auto& vessel) -> json {
-        json size{{"kind", vessel.kName}, {"height_m", std::isfinite(vessel.height) ? vessel.height : kAbove * top}};
+        const double height =
+            std::isfinite(vessel.height) ? vessel.height : drawn_wall_height(container.pose.position, up, vertices);
+        json size{{"kind", vessel.kName}, {"height_m", height}};
         if constexpr (requires { vessel.radius; }) {
           size["radius_m"] = vessel.radius;
         } else {

@@ -21,6 +21,9 @@ nlohmann::json instrument_places_json(const InstrumentList& instruments);
 /// InstrumentPlace of web/src/report_data.ts: the centre line of a needle as it is bent, the pose of a shape.
 nlohmann::json instrument_place_json(const Instrument& instrument);
 
+/// The height at which a wall without end is drawn: 1.15 times that of the body above the floor [m]; 0 without a body.
+double drawn_wall_height(const Vec3d& floor, const Vec3d& up, std::span<const Vec3d> vertices);
+
 /// VesselForm of web/src/report_data.ts; a wall without end is drawn somewhat higher than the body at rest.
 nlohmann::json vessel_json(const ContainerOptions& container, std::span<const Vec3d> vertices);
 

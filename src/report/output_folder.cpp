@@ -26,26 +26,6 @@ namespace fs = std::filesystem;
 constexpr const char* kMark = ".glisson";
 constexpr const char* kMarkText = "Results of glisson. A new run into this folder replaces them.\n";
 
-[[noreturn]] void refuse_folder(const fs::path& folder, const std::string& reason) {
-  throw std::invalid_argument(folder.string() + ": " + reason +
-                              "; choose another folder with --out DIR, or empty this one yourself");
-}
-
-/// Files and folders below `folder`, the deepest first. Links are not followed and are not ours.
-std::vector<fs::path> former_run(const fs::path& folder) {
-  std::vector<fs::path> found;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
-    const bool ours =
-        !entry.is_symlink() &&
-        (entry.is_directory() || (entry.is_regular_file() && scene::is_result_file(entry.path().filename().string())));
-    if (!ours)
-      refuse_folder(folder,
-                    "holds " + entry.path().lexically_relative(folder).string() + ", which glisson did not write");
-    found.push_back(entry.path());
-  }
-  return {found.rbegin(), found.rend()};
-}
-
 struct Holder {
   long process = 0;     ///< 0: the system does not tell
   bool inside = false;  ///< it writes to a folder inside: its lock is shared
@@ -66,37 +46,33 @@ Holder holder_of(const struct stat& folder) {
   return {};
 }
 
-/// That another run writes to a folder, or to one inside it, and the way out.
-std::string other_run(const fs::path& folder, int descriptor) {
-  struct stat locked {};
-  const Holder holder = fstat(descriptor, &locked) == 0 ? holder_of(locked) : Holder{};
-  return folder.string() + ": another run is being written " + (holder.inside ? "inside it" : "there") +
-         (holder.process > 0 ? " by process " + std::to_string(holder.process) : std::string()) +
-         ", and two would mix their files; wait for its end, end it, or choose another folder with --out DIR";
+/// Whether a file is of a study: `glisson.sweep` of Python writes one a point.
+bool is_study_file(const std::string& name) {
+  return name.starts_with("point-") && (name.ends_with(".parquet") || name.ends_with(".part"));
 }
 
-/// Whether a run could write to a folder: it has the mark, or holds nothing but the way to a folder inside it.
+/// Whether a run could write to a folder: it has the mark, or holds nothing but the way to a folder inside it and files of a study.
 bool could_be_output(const fs::path& folder, const fs::path& inside) {
   std::error_code error;
   if (fs::exists(folder / kMark, error)) return true;
   for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
-    if (at->path().filename() != inside.filename()) return false;
+    const fs::path name = at->path().filename();
+    if (name != inside.filename() && !is_study_file(name.string())) return false;
   }
   return !error;
 }
 
 }  // namespace
 
-OutputFolder::OutputFolder(fs::path folder, const std::function<void(const std::string&)>& warn)
-    : folder_(std::move(folder)) {
+OutputFolder::OutputFolder(fs::path folder, const std::function<void(const std::string&)>& warn, std::string way_out)
+    : folder_(std::move(folder)), way_out_(std::move(way_out)) {
   constexpr int kMostTries = 10;  // a run that ends may remove the folder that it made while this one opens it
   try {
     for (int i = 0; i < kMostTries; ++i) {
       make();
       if (lock(warn)) return;
     }
-    throw OutputError(folder_.string() +
-                      ": is removed and made again by another process; choose another folder with --out DIR");
+    throw OutputError(folder_.string() + ": is removed and made again by another process; " + way_out_);
   } catch (...) {
     remove_made();
     unlock();
@@ -109,6 +85,32 @@ OutputFolder::~OutputFolder() {
   unlock();
 }
 
+void OutputFolder::refuse(const std::string& reason) const {
+  throw std::invalid_argument(folder_.string() + ": " + reason + "; " + way_out_ + ", or empty this one yourself");
+}
+
+/// That another run writes to a folder, or to one inside it, and the way out.
+std::string OutputFolder::other_run(const fs::path& folder, int descriptor) const {
+  struct stat locked {};
+  const Holder holder = fstat(descriptor, &locked) == 0 ? holder_of(locked) : Holder{};
+  return folder.string() + ": another run is being written " + (holder.inside ? "inside it" : "there") +
+         (holder.process > 0 ? " by process " + std::to_string(holder.process) : std::string()) +
+         ", and two would mix their files; wait for its end, end it, or " + way_out_;
+}
+
+/// Files and folders of a former run, the deepest first. Links are not followed and are not ours.
+std::vector<fs::path> OutputFolder::former_run() const {
+  std::vector<fs::path> found;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder_)) {
+    const bool ours =
+        !entry.is_symlink() &&
+        (entry.is_directory() || (entry.is_regular_file() && scene::is_result_file(entry.path().filename().string())));
+    if (!ours) refuse("holds " + entry.path().lexically_relative(folder_).string() + ", which glisson did not write");
+    found.push_back(entry.path());
+  }
+  return {found.rbegin(), found.rend()};
+}
+
 void OutputFolder::unlock() {
   if (descriptor_ >= 0) close(descriptor_);
   for (const int above : above_) close(above);
@@ -119,7 +121,7 @@ void OutputFolder::unlock() {
 void OutputFolder::make() {
   std::error_code error;
   const fs::file_status now = fs::status(folder_, error);
-  if (fs::exists(now) && !fs::is_directory(now)) refuse_folder(folder_, "is a file, not a folder");
+  if (fs::exists(now) && !fs::is_directory(now)) refuse("is a file, not a folder");
   std::vector<fs::path> missing;
   for (fs::path at = fs::absolute(folder_); !at.empty() && !fs::exists(at, error); at = at.parent_path()) {
     missing.push_back(at);
@@ -179,12 +181,11 @@ void OutputFolder::lock_above() {
 void OutputFolder::prepare() {
   try {
     if (!fs::is_empty(folder_)) {
-      if (!fs::exists(folder_ / kMark)) refuse_folder(folder_, "is not empty and holds no results of glisson");
-      for (const fs::path& file : former_run(folder_)) fs::remove(file);
+      if (!fs::exists(folder_ / kMark)) refuse("is not empty and holds no results of glisson");
+      for (const fs::path& file : former_run()) fs::remove(file);
     }
   } catch (const fs::filesystem_error& error) {
-    throw OutputError(folder_.string() + ": cannot be prepared: " + error.code().message() +
-                      "; choose another folder with --out DIR");
+    throw OutputError(folder_.string() + ": cannot be prepared: " + error.code().message() + "; " + way_out_);
   }
   write_whole(folder_ / kMark, kMarkText);
   made_.clear();

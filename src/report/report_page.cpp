@@ -14,6 +14,7 @@
 #include "report/json_text.h"
 #include "report/law_data.h"
 #include "report/scene_checks.h"
+#include "report/summary_json.h"
 
 namespace glisson {
 namespace {
@@ -37,6 +38,27 @@ double common_law_reach(const std::vector<const VariantRecorder*>& variants) {
     reach = std::max({reach, 1.1 * v->intensity_max(), law_reach(v->variant())});
   }
   return std::min(reach, 1.2);  // s cannot exceed √1.5
+}
+
+/// AdviceData of web/src/report_data.ts: what is said of several variants alike stands once, warnings first.
+nlohmann::json scene_advice(const Scene& scene, const std::vector<const VariantRecorder*>& variants) {
+  std::vector<nlohmann::json> all;
+  const auto add = [&](const Advice& advice, const std::string& label) {
+    nlohmann::json one(advice_json(advice));
+    for (const char* key : {"about", "name"}) one.erase(key);
+    auto same = std::find_if(all.begin(), all.end(), [&](const nlohmann::json& x) { return x["text"] == one["text"]; });
+    if (same == all.end()) {
+      one["variants"] = nlohmann::json::array();
+      same = all.insert(all.end(), std::move(one));
+    }
+    if (!label.empty()) (*same)["variants"].push_back(label);
+  };
+  for (const VariantRecorder* v : variants) {
+    for (const Advice& one : v->advice()) add(one, v->variant().label.empty() ? v->variant().name : v->variant().label);
+  }
+  for (const Advice& one : advise_on_laws(scene.variants)) add(one, "");
+  std::stable_partition(all.begin(), all.end(), [](const nlohmann::json& x) { return x["kind"] == "warning"; });
+  return all;
 }
 
 nlohmann::json axis_json(const AxisSpec& axis) {
@@ -73,6 +95,7 @@ nlohmann::json scene_json(const Scene& scene, const std::vector<const VariantRec
           {"title", scene.title.empty() ? name : scene.title},
           {"description", scene.description},
           {"notes", scene.notes},
+          {"advice", scene_advice(scene, variants)},
           {"source", scene.source},
           {"variants", std::move(list)},
           {"charts", std::move(charts)},

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "glisson/version.h"
 
 namespace glisson {
@@ -42,8 +44,18 @@ std::uint64_t rejected_poses(std::span<const std::shared_ptr<Instrument>> instru
   return all;
 }
 
+nlohmann::ordered_json advice_json(const Advice& advice) {
+  std::string text = advice.text;
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return {{"rule", advice.rule},
+          {"kind", word_of(advice.kind)},
+          {"about", word_of(advice.about)},
+          {"name", advice.name},
+          {"text", std::move(text)}};
+}
+
 nlohmann::ordered_json summary_json(const RunSummary& s, const Variant& variant, const std::string& scene, int threads,
-                                    std::uint64_t rejected) {
+                                    std::uint64_t rejected, std::span<const Advice> advice) {
   nlohmann::ordered_json json;
   json["scene"] = scene;
   json["variant"] = variant.name;
@@ -94,6 +106,7 @@ nlohmann::ordered_json summary_json(const RunSummary& s, const Variant& variant,
   else
     json["first_inversion_s"] = nullptr;
   if (!s.never_met.empty()) json["never_met"] = s.never_met;
+  for (const Advice& one : advice) json["advice"].push_back(advice_json(one));
   json["integrator"] = word_of(variant.simulation.integrator);
   json["precision"] = word_of(variant.simulation.precision);
   json["threads"] = threads;

@@ -83,6 +83,7 @@ void VariantRecorder::guarded(const std::function<void()>& write) {
 }
 
 void VariantRecorder::on_start(const Variant&, const Simulation& simulation) {
+  advice_ = advise_at_rest(variant_, simulation);
   surface_ = std::make_unique<SurfaceRecorder>(variant_, simulation, options_.surface_bytes);
   guarded([&] {
     make_folder(options_.folder);
@@ -207,7 +208,7 @@ std::vector<TipDistance> VariantRecorder::tips() const {
 
 /// The summary of the run, and where tips ended.
 nlohmann::ordered_json VariantRecorder::summary_with_tips() const {
-  nlohmann::ordered_json json = summary_json(summary_, variant_, options_.scene, options_.threads, rejected_);
+  nlohmann::ordered_json json = summary_json(summary_, variant_, options_.scene, options_.threads, rejected_, advice_);
   for (const TipDistance& tip : tips()) {
     const std::string name = tip.probe + "_tip_";
     json[name + "distance_m"] = tip.distance;
@@ -238,9 +239,11 @@ nlohmann::json VariantRecorder::instruments_json() const {
 }
 
 nlohmann::json VariantRecorder::json(double law_reach) const {
+  nlohmann::json summary(summary_with_tips());
+  summary.erase("advice");  // the page has that of all variants together
   return {{"name", variant_.name},
           {"label", variant_.label.empty() ? variant_.name : variant_.label},
-          {"summary", nlohmann::json(summary_with_tips())},
+          {"summary", std::move(summary)},
           {"forces", table_json(table_->columns(), data_)},
           {"instruments", instruments_json()},
           {"probes", table_json(probe_columns_, probe_data_)},

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "glisson/scene/advice.h"
 #include "glisson/scene/scene.h"
 #include "report/force_table.h"
 #include "report/frame_series.h"
@@ -58,6 +59,8 @@ class VariantRecorder : public RunObserver {
   const Variant& variant() const { return variant_; }
   const std::string& scene() const { return options_.scene; }
   const RunSummary& summary() const { return summary_; }
+  /// advise_at_rest() of the variant.
+  const std::vector<Advice>& advice() const { return advice_; }
   /// rejected_poses() of its instruments.
   std::uint64_t rejected() const { return rejected_; }
   /// Columns of forces.csv and their values, column by column.
@@ -95,6 +98,7 @@ class VariantRecorder : public RunObserver {
   std::vector<std::vector<double>> probe_data_;
   std::vector<std::shared_ptr<Instrument>> instruments_;
   RunSummary summary_;
+  std::vector<Advice> advice_;
   std::uint64_t rejected_ = 0;
   std::string error_;
 };

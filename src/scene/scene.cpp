@@ -88,21 +88,21 @@ void check_end(const Variant& variant, const Node& experiment, Problems& problem
       "motion ends it, or a [[fixed]] set with a record");
 }
 
-/// What acts on the body besides supports, tools and loads; not attached.
-std::vector<std::shared_ptr<Interaction>> interactions_of(const Variant& variant) {
-  std::vector<std::shared_ptr<Interaction>> all;
-  for (const InstrumentSpec& x : variant.instruments) all.push_back(make_instrument(x));
+using Interactions = std::vector<std::shared_ptr<Interaction>>;
+
+/// The container and the capsules beside the instruments: what acts on the body besides supports, tools and loads; not attached.
+Interactions with_others(Interactions all, const Variant& variant) {
   if (variant.container) all.push_back(std::make_shared<Container>(variant.container->options));
   for (const CapsuleSpec& x : variant.capsules) all.push_back(std::make_shared<Capsule>(x.options));
   return all;
 }
 
 /// Why an integrator does not support the interactions of a variant, after its word; empty: it does.
-std::string refusal(const Variant& variant) {
+std::string refusal(const Variant& variant, const Interactions& interactions) {
   const Capabilities can = capabilities(variant.simulation.integrator);
   if (can.supports(is_viscous(variant))) return "";
   if (can.supports_contact) {
-    for (const auto& x : interactions_of(variant)) {
+    for (const auto& x : interactions) {
       if (const std::string why = x->refuses_long_steps(); !why.empty())
         return " does not support " + x->label() + ", which " + why;
     }
@@ -118,18 +118,20 @@ std::string refusal(const Variant& variant) {
 }
 
 /// Complains about an integrator that does not support the interactions of a variant.
-void check_integrator(const Variant& variant, const Node& experiment, Problems& problems) {
-  const std::string why = refusal(variant);
+void check_integrator(const Variant& variant, const Interactions& interactions, const Node& experiment,
+                      Problems& problems) {
+  const std::string why = refusal(variant, interactions);
   if (why.empty()) return;
   const Node& key = *experiment.find("motion")->find("integrator");
   problems.add(key.where, "motion.integrator", "\"" + *key.text() + "\"" + why);
 }
 
 /// Complains about more stages of drag than an interaction supports.
-void check_stages(const Variant& variant, const Node& experiment, Problems& problems) {
+void check_stages(const Variant& variant, const Interactions& interactions, const Node& experiment,
+                  Problems& problems) {
   const int stages = variant.simulation.drag_stages;
   if (stages == SimulationOptions{}.drag_stages) return;
-  for (const auto& x : interactions_of(variant)) {
+  for (const auto& x : interactions) {
     const int most = x->most_drag_stages();
     if (stages <= most) continue;
     return problems.add(experiment.find("motion")->find("drag_stages")->where, "motion.drag_stages",
@@ -151,7 +153,10 @@ void complete_poses(PosesSpec& poses, const std::filesystem::path& base) {
 }
 
 /// Reads the files of recorded motions, and tries all tools and instruments with their motions.
-void complete_motions(Variant& variant, const Node& experiment, const std::filesystem::path& base, Problems& problems) {
+/// @return the instruments, as they are before there is a body
+Interactions complete_motions(Variant& variant, const Node& experiment, const std::filesystem::path& base,
+                              Problems& problems) {
+  Interactions instruments;
   for (std::size_t i = 0; i < variant.fixed.size(); ++i) {
     FixedSpec& x = variant.fixed[i];
     if (!x.record) continue;
@@ -183,11 +188,12 @@ void complete_motions(Variant& variant, const Node& experiment, const std::files
       if (auto* record = std::get_if<RecordSpec>(&x.motion.how))
         complete_record(*record, x.motion.direction.value_or(x.direction), base);
       if (auto* poses = std::get_if<PosesSpec>(&x.motion.how)) complete_poses(*poses, base);
-      make_instrument(x);
+      instruments.push_back(make_instrument(x));
     } catch (const std::exception& error) {
       problems.add(motion.where, path, error.what());
     }
   }
+  return instruments;
 }
 
 /// Reads the files of surfaces among a body's shapes.
@@ -266,7 +272,9 @@ void note_repairs(Scene& scene) {
 
 int most_drag_stages(const Variant& variant) {
   int most = kMostDragStages;
-  for (const auto& x : interactions_of(variant)) most = std::min(most, x->most_drag_stages());
+  Interactions instruments;
+  for (const InstrumentSpec& x : variant.instruments) instruments.push_back(make_instrument(x));
+  for (const auto& x : with_others(std::move(instruments), variant)) most = std::min(most, x->most_drag_stages());
   return most;
 }
 
@@ -279,7 +287,7 @@ Variant scene::read_variant(const Node& experiment, const std::filesystem::path&
   auto* file = std::get_if<MeshFile>(&variant.mesh);
   if (file && file->path.is_relative()) file->path = base / file->path;
   if (auto* body = std::get_if<ImplicitBody>(&variant.mesh)) complete_surfaces(*body, experiment, base, problems);
-  complete_motions(variant, experiment, base, problems);
+  Interactions instruments = complete_motions(variant, experiment, base, problems);
   if (problems.count() > before) return variant;
   if (const Node* tools = experiment.find("tool")) check_names(*tools->array(), "tool", problems);
   if (const Node* list = experiment.find("instrument")) check_names(*list->array(), "instrument", problems);
@@ -287,8 +295,9 @@ Variant scene::read_variant(const Node& experiment, const std::filesystem::path&
   if (const Node* regions = experiment.find("region")) check_names(*regions->array(), "region", problems);
   if (const Node* probes = experiment.find("probe")) check_names(*probes->array(), "probe", problems);
   check_sets(variant, experiment, problems);
-  check_integrator(variant, experiment, problems);
-  check_stages(variant, experiment, problems);
+  const Interactions interactions = with_others(std::move(instruments), variant);
+  check_integrator(variant, interactions, experiment, problems);
+  check_stages(variant, interactions, experiment, problems);
   check_end(variant, experiment, problems);
   return variant;
 }

@@ -284,6 +284,36 @@ TEST_F(Outputs, ReportHoldsTheRun) {
   EXPECT_EQ(v["law_curves"][0]["curves"][0]["y"][0], 3600.0);
 }
 
+// What `glisson check` says of a variant stands in its summary, in one line each, but for what builds the body again; the report has it
+// once for all variants, warnings first.
+TEST_F(Outputs, AdviceStandsInSummaryAndReport) {
+  const std::string scene = write("s.toml", small_scene("[[variant]]\nname = \"soft\"\n[[variant]]\nname = \"wet\"\n"
+                                                        "tissue.poisson_ratio = 0.49\ntissue.law_form = \"secant\"\n"
+                                                        "tissue.law = { kind = \"linear\", slope_Pa = 1000 }\n"));
+  ASSERT_THAT(run({"run", scene, "--out", "o", "--quiet"}), Exits(0));
+  std::string check = run({"check", scene}).out;
+  check = std::regex_replace(check, std::regex("\n +"), " ");
+  const auto rules = [&](const std::string& variant) {
+    std::vector<std::string> names;
+    const nlohmann::json summary = read_json(folder_ / "o" / variant / "summary.json");
+    for (const nlohmann::json& one : summary["advice"]) {
+      names.push_back(one["rule"]);
+      const std::string text = one["text"];
+      EXPECT_EQ(text.find('\n'), std::string::npos);
+      EXPECT_NE(check.find(text), std::string::npos) << text << "\nis not in\n" << check;
+    }
+    return names;
+  };
+  EXPECT_EQ(rules("soft"), std::vector<std::string>{"coarse"});
+  EXPECT_EQ(rules("wet"), (std::vector<std::string>{"locking", "coarse"}));
+  std::vector<std::string> said;
+  const nlohmann::json report = report_data(folder_ / "o/report.html")["scenes"][0];
+  for (const nlohmann::json& one : report["advice"])
+    said.push_back(one["rule"].get<std::string>() + one["variants"].dump());
+  EXPECT_EQ(said, (std::vector<std::string>{"coarse[\"soft\",\"wet\"]", "locking[\"wet\"]", "cycle_work[]"}));
+  EXPECT_FALSE(report["variants"][1]["summary"].contains("advice"));
+}
+
 // Checks of a scene are printed and stand in the report; one that fails ends the program with status 1, and is said with --quiet too.
 TEST_F(Outputs, ChecksOfTheSceneAreHeldAgainstItsRun) {
   const std::string checks =

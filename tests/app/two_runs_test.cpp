@@ -1,10 +1,24 @@
 // One folder, one run: a second process that would write there is refused while the first lives, and nothing is changed.
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <map>
 #include <thread>
 
 #include "app/program.h"
+#include "report/output_folder.h"
+
+static bool file_system_has_locks = true;  // for this process; the programs that tests start have their own
+
+/// In place of the C library's: refuses as a file system without locks does.
+extern "C" int flock(int descriptor, int operation) {
+  if (file_system_has_locks) return static_cast<int>(syscall(SYS_flock, descriptor, operation));
+  errno = EOPNOTSUPP;
+  return -1;
+}
 
 namespace glisson::test::two_runs_test {
 namespace {
@@ -158,6 +172,23 @@ bootstrap = 20000
 TEST_F(TwoRuns, ReplacesItsOwnFormerRun) {
   const std::string scene = write("small.toml", small_scene());
   for (int i = 0; i < 2; ++i) EXPECT_THAT(second({"run", scene}), Exits(0));
+}
+
+// On a file system without locks the run goes on, with a warning that names the folder and the reason.
+TEST_F(TwoRuns, AFolderWithoutLocksIsWarnedOf) {
+  std::vector<std::string> warnings;
+  file_system_has_locks = false;
+  {
+    OutputFolder folder(out_, [&](const std::string& text) { warnings.push_back(text); });
+    folder.prepare();
+  }
+  file_system_has_locks = true;
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_THAT(warnings.front(),
+              HasSubstr(out_.string() + ": cannot be locked (Operation not supported): nothing keeps"));
+  EXPECT_TRUE(fs::exists(out_ / ".glisson"));
+  OutputFolder(out_, [&](const std::string& text) { warnings.push_back(text); }).prepare();
+  EXPECT_EQ(warnings.size(), 1u);
 }
 
 }  // namespace

@@ -264,6 +264,15 @@ function figure2() {
       "Poisson's ratio 0.4 and E = 3600 Pa at rest follow the paper; the threshold s = 0.12 and the factor 1.9 of tissue 1 are ours.",
       "The pressed triangle has the top vertices (2,2), (1,2), (2,1); another triangle or another split changes the stiffness by up to 4 %.",
     ],
+    advice: [
+      {
+        rule: "coarse",
+        kind: "warning",
+        text: '"tool" acts on 2 faces with edges of 11.4 mm: its force may be far off; mesh.cells = [16, 16, 16] takes more.',
+        variants: ["Linear", "Tissue 1: step", "Tissue 2: rising with s"],
+      },
+      { rule: "slow", kind: "remark", text: "tools move by 0.1 µm a step at most.", variants: ["Linear"] },
+    ],
     source: SOURCE,
     variants: [
       make("linear", "Linear", (d) => 51.2 * d, laws.linear, 0.01, 2.31),

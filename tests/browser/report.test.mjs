@@ -33,6 +33,22 @@ describe("a report on a laptop", () => {
     assert.ok((await page.locator("h1").innerText()).length > 0);
   });
 
+  test("has all advice of its scenes, warnings first and called so", async () => {
+    const { wanted, shown } = await page.evaluate(() => {
+      const { scenes } = JSON.parse(document.getElementById("glisson-data").textContent);
+      return {
+        wanted: scenes.flatMap((scene) => scene.advice ?? []).map(({ kind, text }) => ({ kind, text })),
+        shown: [...document.querySelectorAll(".scene .advice li")].map((item) => item.textContent),
+      };
+    });
+    assert.equal(shown.length, wanted.length);
+    wanted.forEach(({ kind, text }, at) => {
+      assert.ok(shown[at].endsWith(text), `${shown[at]} for ${text}`);
+      assert.equal(shown[at].startsWith("Warning. "), kind === "warning");
+    });
+    assert.ok(wanted.length > 0, "there is some");
+  });
+
   test("draws lines into every chart, and labels both axes with a unit", async () => {
     const charts = page.locator(".chart");
     const count = await charts.count();

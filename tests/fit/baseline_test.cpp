@@ -184,14 +184,14 @@ TEST(Baseline, OneDecisionForAllTablesOfATest) {
   held_out.held_out = true;
   EXPECT_TRUE(of_one_test(fitted, held_out));
   EXPECT_FALSE(load_curves(held_out, {}, folder.path()).front().account.sloped);
-  const auto together = load_test(std::vector{fitted, held_out}, {}, folder.path());
+  const auto together = TestFiles(std::vector{fitted, held_out}, {}, folder.path()).curves();
   ASSERT_EQ(together.size(), 2U);
   EXPECT_TRUE(together[0].front().account.sloped && together[1].front().account.sloped);
   EXPECT_NEAR(together[1].front().account.contact, 0.9e-3, 0.03e-3);
   held_out.files = {"in_contact.csv"};
   EXPECT_EQ(load_curves(held_out, {}, folder.path()).front().account.contact_how, "extrapolated");
   try {
-    load_test(std::vector{fitted, held_out}, {}, folder.path());
+    TestFiles(std::vector{fitted, held_out}, {}, folder.path()).curves();
     ADD_FAILURE() << "not refused";
   } catch (const SceneError& error) {
     EXPECT_THAT(error.what(), HasSubstr("other curves of this test have a baseline with a slope"));

@@ -274,6 +274,53 @@ TEST_F(Machine, OtherRheometersAndSummaries) {
               1e-3, 1e-3);
 }
 
+// 1/s of a frequency is Hz to some and rad/s to others: the name of the column decides, else the user is asked with the line that
+// settles it; a shear rate beside it, and units that stand below the names, are read for what they are.
+TEST_F(Machine, FrequenciesPerSecondAreReadByTheirName) {
+  const std::string keys = "test = \"oscillation\"\n";
+  const std::string numbers = "0.5\t100.5\t10.5\n1\t201\t21\n2\t301.5\t31.5\n";
+  const auto table = [&](const std::string& frequency, const std::string& unit) {
+    return frequency + "\tStorage Modulus\tLoss Modulus\n" + unit + "\t[Pa]\t[Pa]\n" + numbers;
+  };
+  for (const char* angular : {"Angular Frequency", "Kreisfrequenz", "Pulsation", "ω"}) {
+    for (const char* unit : {"[1/s]", "[s⁻¹]", "[s^-1]", "[1 / s]"})
+      EXPECT_DOUBLE_EQ(read(table(angular, unit), keys, kPoint).displacement[1], 0.5 / M_PI) << angular << unit;
+    EXPECT_DOUBLE_EQ(read(std::string(angular) + " (1/s)\tG' (Pa)\tG\" (Pa)\n" + numbers, keys, kPoint).displacement[2],
+                     1.0 / M_PI);
+  }
+  const std::string plain_name = table("Frequency", "[1/s]");
+  const std::string asked =
+      "\"1/s\" of column \"Frequency\" may be Hz or rad/s; give `unit` as the one that is meant: "
+      "columns.frequency = { number = 1, unit = \"Hz\" } or unit = \"rad/s\"";
+  EXPECT_THAT(fault(plain_name, keys, kPoint), HasSubstr(asked));
+  EXPECT_THAT(fault(plain_name, keys + "columns.frequency = { number = 1, unit = \"1/s\" }\n", kPoint),
+              HasSubstr(asked));
+  const auto with = [&](const std::string& unit) {
+    return keys + "columns.frequency = { number = 1, unit = \"" + unit + "\" }\n";
+  };
+  EXPECT_EQ(read(plain_name, with("Hz"), kPoint).displacement[1], 1.0);
+  EXPECT_DOUBLE_EQ(read(plain_name, with("rad/s"), kPoint).displacement[1], 0.5 / M_PI);
+  EXPECT_DOUBLE_EQ(read(table("Angular Frequency", ""), with("1/s"), kPoint).displacement[1], 0.5 / M_PI);
+  EXPECT_EQ(section("files = [\"t.csv\"]\ncolumns.frequency = { number = 1, unit = \"1/s\" }\n").columns.frequency.unit,
+            "1/s");
+}
+
+// A rate beside the columns of a test: `1/s` is one unit, in brackets, after a comma, a blank or below the names.
+TEST_F(Machine, RatesBesideTheTestAreLeftAlone) {
+  const auto beside = [](const std::string& title) {
+    std::string text = "Time (s);" + title + ";Extension (mm);Load (mN)\n";
+    for (std::size_t i = 0; i < kRows; ++i)
+      text += plain(time_at(i), 3) + ";0.125;" + plain(way_at(i), 4) + ";" + plain(load_at(i), 3) + "\n";
+    return text;
+  };
+  for (const char* title : {"Strain rate (1/s)", "Strain rate, 1/s", "Strain rate 1/s", "Speed_mm/s", "Time rate 1/s"})
+    expect_rows(read(beside(title)), 1.0, 1e-3, 1e-3);
+  std::string below = "Strain rate;Weg;Kraft;Zeit\n1/s;mm;mN;s\n";
+  for (std::size_t i = 0; i < kRows; ++i)
+    below += "0.125;" + plain(way_at(i), 4) + ";" + plain(load_at(i), 3) + ";" + plain(time_at(i), 3) + "\n";
+  expect_rows(read(below), 1.0, 1e-3, 1e-3);
+}
+
 std::string with_faults(const std::vector<std::size_t>& bad, std::size_t size) {
   std::string text = "Time (s);Extension (mm);Load (mN)\n";
   for (std::size_t i = 0; i < size; ++i) {

@@ -60,9 +60,9 @@ run_tests() {
   cd "$work"
   "$work/venv/bin/mypy" --config-file "$source/pyproject.toml" -p glisson
   export GLISSON_PROGRAM="$program" MPLBACKEND=Agg
-  "$work/venv/bin/python" -m pytest -q -p no:cacheprovider --rootdir "$source/tests/python" --durations=5 \
+  "$work/venv/bin/python" -m pytest -q -rs -p no:cacheprovider --rootdir "$source/tests/python" --durations=5 \
     "$source/tests/python"
-  "$work/venv/bin/python" -m pytest -q -p no:cacheprovider --doctest-modules --doctest-glob='*.none' \
+  "$work/venv/bin/python" -m pytest -q -rs -p no:cacheprovider --doctest-modules --doctest-glob='*.none' \
     -o doctest_optionflags='ELLIPSIS IGNORE_EXCEPTION_DETAIL' --pyargs glisson
 }
 

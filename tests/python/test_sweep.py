@@ -1,6 +1,6 @@
 """Parameter studies: every point once, resumed, and through the death of a worker, here and on a Dask cluster."""
 
-import fcntl
+import contextlib
 import os
 import signal
 import subprocess
@@ -75,30 +75,45 @@ def test_a_killed_worker_costs_nothing(tmp_path, monkeypatch):
     assert sorted(set(table["tissue.youngs_modulus_Pa"].to_pylist())) == [2000, 4000, 8000]
 
 
-def test_a_second_study_into_one_folder_is_refused(tmp_path):
-    """While another process holds the folder, a study and a run into it are refused with nothing changed; then they go on."""
-    holder = "import fcntl, os, sys; fcntl.flock(os.open(sys.argv[1], os.O_RDONLY), fcntl.LOCK_EX); print('held', flush=True); sys.stdin.read()"
+@contextlib.contextmanager
+def held(folder):
+    """Another process that writes a run or a study into a folder."""
+    code = "import sys; from glisson._folder_lock import alone_in\nwith alone_in(sys.argv[1]): print('held', flush=True); sys.stdin.read()"
     with subprocess.Popen(
-        [sys.executable, "-c", holder, str(tmp_path)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        [sys.executable, "-c", code, str(folder)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
     ) as other:
         assert other.stdout.readline() == "held\n"
+        try:
+            yield other.pid
+        finally:
+            other.kill()
+
+
+def test_a_second_study_into_one_folder_is_refused(tmp_path):
+    """While another process holds the folder, a study and a run into it are refused with nothing changed; then they go on."""
+    with held(tmp_path) as process:
         for write in (lambda: glisson.sweep(SCENE, POINTS, tmp_path, workers=1), lambda: glisson.run(SCENE, out=tmp_path)):
-            with pytest.raises(RuntimeError, match="another run or study is being written there"):
+            with pytest.raises(RuntimeError, match=f"another run is being written there by process {process}, .* give another folder as `out`"):
                 write()
         assert list(tmp_path.iterdir()) == []
-        other.kill()
     assert glisson.sweep(SCENE, POINTS, tmp_path, workers=1).num_rows == 6
 
 
-def test_a_folder_without_locks_is_warned_of(tmp_path, monkeypatch):
-    """A file system without locks: the study goes on with a warning."""
-
-    def no_locks(descriptor, what):
-        raise OSError(95, "Operation not supported")
-
-    monkeypatch.setattr(fcntl, "flock", no_locks)
-    with pytest.warns(UserWarning, match="cannot be locked"):
-        assert glisson.sweep(SCENE, POINTS, tmp_path, workers=1).num_rows == 6
+def test_a_study_inside_or_around_another_is_refused(tmp_path):
+    """The rule of the program: no run inside the folder of another, nor around it; beside it is free, also where a study has left its rows."""
+    study = tmp_path / "study"
+    assert glisson.sweep(SCENE, POINTS, study, workers=1).num_rows == 6
+    rows = sorted(study.iterdir())
+    with held(study) as process:
+        with pytest.raises(RuntimeError, match=f"x is inside the folder of another run. {study}: another run is being written there by process {process}"):
+            glisson.run(SCENE, out=study / "x")
+        assert sorted(study.iterdir()) == rows
+        glisson.run(SCENE, out=tmp_path / "beside")
+    with held(study / "deep" / "er") as process:
+        for write in (lambda: glisson.sweep(SCENE, POINTS, study, workers=1), lambda: glisson.run(SCENE, out=study / "deep")):
+            with pytest.raises(RuntimeError, match=f"another run is being written inside it by process {process}"):
+                write()
+    assert glisson.sweep(SCENE, POINTS, study, workers=1).num_rows == 6
 
 
 def raising(result):

@@ -329,5 +329,26 @@ TEST(Advice, HasAnOrderAndAPlace) {
   EXPECT_EQ(all.back().kind, Advice::Kind::remark);
 }
 
+// A variant that is about to run is told the same but for what needs its body again, and no body is built: there is no mesh to be had.
+TEST(Advice, OfAVariantAtRestBuildsNone) {
+  const auto in_words = [](const std::vector<Advice>& advice, bool all) {
+    std::vector<std::string> list;
+    for (const Advice& one : advice) {
+      if (all || (one.rule != "limits" && one.rule != "stages")) list.push_back(one.rule + ": " + one.text);
+    }
+    return list;
+  };
+  std::size_t said = 0, left_out = 0;
+  for (const std::string& scene : {kStone, cube("", "viscosity_Pa_s = 100"), cube("precision = \"adaptive\"")}) {
+    const Variant variant = test::parse(scene).variants.front();
+    const std::vector<Advice> trying = advise(variant, no_file);
+    const std::vector<Advice> at_rest = advise_at_rest(variant, build_variant(variant, no_file).simulation);
+    EXPECT_EQ(in_words(at_rest, true), in_words(trying, false));
+    said += at_rest.size(), left_out += trying.size() - at_rest.size();
+  }
+  EXPECT_GE(said, 1u);
+  EXPECT_GE(left_out, 2u) << "limits of the first, stages of the second";
+}
+
 }  // namespace advice_test
 }  // namespace glisson

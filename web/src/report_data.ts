@@ -22,6 +22,7 @@ export interface SceneData {
   title: string;
   description: string; // plain text
   notes: string[]; // choices where the source is silent
+  advice: AdviceData[]; // warnings first
   source: string; // the TOML text
   variants: VariantData[];
   charts: ChartSpec[]; // empty: the page shows force against depth and force against time
@@ -169,6 +170,14 @@ export interface TableData {
   columns: string[];
   rows: (string | number)[][];
   note: string;
+}
+
+/** What is known of a scene before it runs, as `glisson check` says it. */
+export interface AdviceData {
+  rule: string; // as in docs/output.md, e.g. "locking"
+  kind: "warning" | "remark"; // a warning: results may be wrong
+  text: string; // sentences with the numbers and the way out
+  variants: string[]; // labels of those that it is said of; empty: the whole scene
 }
 
 export interface CheckData {

@@ -51,6 +51,7 @@ const scene = (variants: VariantData[], charts: ChartSpec[] = []): SceneData => 
   title: "s",
   description: "",
   notes: [],
+  advice: [],
   source: "",
   tables: [],
   checks: [],

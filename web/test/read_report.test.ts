@@ -22,13 +22,27 @@ describe("reading the report", () => {
 
   it("fills in everything that is missing", () => {
     const report = read({ format: 1, scenes: [{ variants: [{}] }] });
-    expect(report.scenes[0]).toMatchObject({ name: "scene-1", title: "scene-1", notes: [], charts: [], checks: [] });
+    expect(report.scenes[0]).toMatchObject({
+      name: "scene-1",
+      title: "scene-1",
+      notes: [],
+      advice: [],
+      charts: [],
+      checks: [],
+    });
     expect(report.scenes[0]!.variants[0]).toMatchObject({
       label: "variant-1",
       law_curves: [],
       surface: null,
       forces: { columns: [], data: [] },
     });
+  });
+
+  it("reads advice, a kind that it does not know as a remark", () => {
+    const locks = { rule: "locking", kind: "warning", text: "ν = 0.49", variants: ["stiff"] };
+    const scene = read({ format: 1, scenes: [{ advice: [locks, { rule: "new", kind: "other", text: "…" }] }] })
+      .scenes[0]!;
+    expect(scene.advice).toEqual([locks, { rule: "new", kind: "remark", text: "…", variants: [] }]);
   });
 
   it("takes null in columns for NaN and drops names without data", () => {

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "glisson/io.h"
+#include "report/instrument_json.h"
 #include "report/json_text.h"
 
 namespace glisson::view {
@@ -32,18 +33,14 @@ void mix(std::vector<double>& values, const std::vector<double>& next, double sh
   for (std::size_t i = 0; i < values.size(); ++i) values[i] += (next[i] - values[i]) * share;
 }
 
-/// A wall without end is drawn somewhat higher than the body, as in reports.
+/// A vessel with a wall without end as reports draw it.
 std::string with_height(const std::string& form, const std::vector<Vec3d>& vertices) {
-  constexpr double kAbove = 1.15;  // instrument_json.cpp has the same
   if (form.empty()) return form;
   nlohmann::json vessel = nlohmann::json::parse(form);
   if (!vessel["height_m"].is_null()) return form;
   const auto origin = vessel["origin"].get<std::array<double, 3>>();
   const auto axes = vessel["axes"].get<std::array<double, 9>>();
-  double top = 0.0;
-  for (const Vec3d& x : vertices)
-    top = std::max(top, dot(x - Vec3d{origin[0], origin[1], origin[2]}, Vec3d{axes[2], axes[5], axes[8]}));
-  vessel["height_m"] = kAbove * top;
+  vessel["height_m"] = drawn_wall_height({origin[0], origin[1], origin[2]}, {axes[2], axes[5], axes[8]}, vertices);
   return json_text(vessel);
 }
 

@@ -3,7 +3,7 @@
 //
 //   variant ──build──▶ VariantAtRest ──rules, a function each (src/scene/advice/)──▶ advice, in the order of `glisson check`
 //
-// `glisson check` prints it, each piece below what it is about.
+// `glisson check` prints it, each piece below what it is about. A run has in its summary and report what no second body is needed for.
 #pragma once
 
 #include <cstddef>
@@ -81,6 +81,10 @@ std::vector<Advice> advise_on_laws(std::span<const Variant> variants);
 /// Builds a variant and gives the advice on its body, then on its steps. It may build it several times, without a limit of time.
 /// @throws SceneError if it cannot be built, and what `load` throws
 std::vector<Advice> advise(const Variant& variant, const MeshLoader& load);
+
+/// The same of a variant that is about to run, without the rules that build it again: `limits` and `stages` are left out.
+/// @param simulation  its body before the first step
+std::vector<Advice> advise_at_rest(const Variant& variant, const Simulation& simulation);
 
 /// What quasi_static does with Maxwell branches and viscosity where the variant has them and no `branches`; else empty.
 std::string branches_note(const Variant& variant);

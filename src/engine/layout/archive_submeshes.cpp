@@ -29,7 +29,7 @@ void archive_chains(Archive& ar, const Body& body, Submesh& part, std::size_t la
   ar.check(count <= c.element.size() && closed <= pairs && 2 * pairs <= laid_out && laid_out <= count);
   ar.check(c.index.size() == count * kChainVertices * lanes && c.rest.size() == count * kChainRest * lanes &&
            c.element.size() == count * kChainTets * lanes && holds_all(c, body, part.elements));
-  c.count = count, c.pairs = pairs, c.closed_pairs = closed, part.laid_out = laid_out;
+  if (ar.reads()) c.count = count, c.pairs = pairs, c.closed_pairs = closed, part.laid_out = laid_out;
 }
 
 /// Vertices and elements of a submesh, and where its elements lie.
@@ -37,7 +37,7 @@ void archive_part(Archive& ar, const Body& body, const Interface& interface, Sub
   auto block = static_cast<std::uint32_t>(part.block), inside = static_cast<std::uint32_t>(part.interior_count);
   ar.below(block, body.blocks.size());
   ar(inside, part.shared, part.elements, part.gradient_reach);
-  part.block = block, part.interior_count = inside;
+  if (ar.reads()) part.block = block, part.interior_count = inside;
   const TissueBlock& tissue = body.blocks[block];
   ar.check(part.local_vertices() <= kMaxLocalVertices &&
            std::adjacent_find(part.shared.begin(), part.shared.end(), std::greater_equal<>()) == part.shared.end());
@@ -62,8 +62,7 @@ struct Layout {
     auto parts = static_cast<std::uint32_t>(submeshes.parts.size());
     ar(submeshes.record_of_vertex, first, parts);
     ar.check(parts <= body.elements.size() && submeshes.record_of_vertex.size() == body.vertex_count);
-    submeshes.interface.first_record = first;
-    submeshes.parts.resize(parts);
+    if (ar.reads()) submeshes.interface.first_record = first, submeshes.parts.resize(parts);
     for (Submesh& part : submeshes.parts) archive_part(ar, body, submeshes.interface, part, lanes);
   }
 

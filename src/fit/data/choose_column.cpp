@@ -95,6 +95,15 @@ const Unit* unit_of(const CurveFile& file, std::size_t column, const std::string
   if (text.empty() && (quantity == Quantity::strain || quantity == Quantity::stretch)) text = "-";
   const Unit* unit = find_unit(quantity, text);
   if (unit) return unit;
+  if (quantity == Quantity::frequency && is_per_second(text)) {
+    if (column < file.names.size() && says_angular(split_title(file.names[column]).name))
+      return find_unit(quantity, "rad/s");
+    problems.add(at_names(file), key,
+                 in_quotes(text) + " of column " + file.title(column) +
+                     " may be Hz or rad/s; give `unit` as the one that is meant: " + key +
+                     " = { number = " + std::to_string(column + 1) + ", unit = \"Hz\" } or unit = \"rad/s\"");
+    return nullptr;
+  }
   problems.add(at_names(file), key,
                (text.empty() ? "column " + file.title(column) + " says no unit"
                              : "unknown unit " + in_quotes(text) + " of column " + file.title(column)) +
@@ -107,7 +116,7 @@ const Unit* unit_of(const CurveFile& file, std::size_t column, const std::string
 std::vector<std::size_t> customary(const CurveFile& file, Quantity quantity, ColumnMeaning meaning) {
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < file.names.size(); ++i) {
-    if (!file.units[i].empty() && !find_unit(quantity, file.units[i])) continue;
+    if (!file.units[i].empty() && !may_be(quantity, file.units[i])) continue;
     if (has_meaning(split_title(file.names[i]).name, meaning)) found.push_back(i);
   }
   return found;

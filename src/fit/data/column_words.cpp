@@ -133,4 +133,11 @@ bool has_meaning(std::string_view name, ColumnMeaning meaning) {
   return begins_with_any(small, words.words) || begins_with_any(without_adjective(small), words.words);
 }
 
+bool says_angular(std::string_view name) {
+  static const Words words{"angular frequency", "angular freq", "kreisfrequenz",
+                           "winkelfrequenz",    "pulsation",    "omega"};
+  const std::string small = in_small_letters(name);
+  return small == "ω" || begins_with_any(small, words);
+}
+
 }  // namespace glisson::fit

@@ -31,4 +31,7 @@ enum class ColumnMeaning {
 /// whole name.
 bool has_meaning(std::string_view name, ColumnMeaning meaning);
 
+/// Whether the name of a column of frequencies says that these are angular: "Angular frequency", "Kreisfrequenz", "pulsation", "ω".
+bool says_angular(std::string_view name);
+
 }  // namespace glisson::fit

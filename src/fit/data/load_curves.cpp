@@ -43,87 +43,25 @@ void make_unique(std::vector<PreparedCurve>& curves, const DataSpec& spec) {
   for (PreparedCurve& c : curves) c.account.name = c.curve.name;
 }
 
-std::vector<PreparedCurve> prepare_all(const std::vector<RawTest>& tests, const DataSpec& spec,
-                                       const SpecimenSize& size, std::string& faults) {
-  std::vector<PreparedCurve> curves;
-  for (const RawTest& test : tests) {
-    collect(faults, [&] {
-      scene::Problems problems(test.file.string());
-      auto prepared = prepare(test, spec, size, problems);
-      problems.throw_if_any();
-      curves.push_back(std::move(*prepared));
-    });
-  }
-  return curves;
+using CurvesOfTables = std::vector<std::vector<PreparedCurve>>;
+
+bool any(const CurvesOfTables& tables, const std::function<bool(const CurveAccount&)>& is) {
+  return std::any_of(tables.begin(), tables.end(), [&](const auto& curves) {
+    return std::any_of(curves.begin(), curves.end(), [&](const PreparedCurve& c) { return is(c.account); });
+  });
 }
 
-/// The sections of a test with their raw rows: what is decided of contact is decided for all.
-class TestOfTables {
- public:
-  TestOfTables(std::span<const DataSpec> tables, const SpecimenSize& common, const std::filesystem::path& base) {
-    for (const DataSpec& table : tables) {
-      Table& t = tables_.emplace_back(Table{table, common, {}, {}});
-      if (table.size.area) t.size.area = table.size.area;
-      if (table.size.height) t.size.height = table.size.height;
-      for (const auto& file : table.files)
-        collect(faults_, [&] { t.tests.push_back(load_raw(placed(file, base), t.spec, t.size)); });
-      if (!faults_.empty() || table.unlikely) continue;
-      for (const std::string& fault : repetition_faults(t.tests))
-        faults_.append(faults_.empty() ? "" : "\n").append(fault);
+/// The largest force at which one curve begins in contact, where others begin before; 0 where all are alike.
+double common_preload(const CurvesOfTables& tables) {
+  double most = 0.0;
+  for (const auto& curves : tables) {
+    for (const PreparedCurve& c : curves) {
+      if (c.account.contact_how == "extrapolated") most = std::max(most, c.account.first_force);
     }
   }
-
-  std::vector<std::vector<PreparedCurve>> curves() {
-    prepare_all_tables();
-    const bool sloped = any([](const CurveAccount& a) { return a.sloped; });
-    if (sloped) prepare_all_tables([](ContactSpec& c) { c.sloped = true; });
-    const double preload = common_preload();
-    if (preload > 0.0) prepare_all_tables([&](ContactSpec& c) { c.preload = preload; });
-    std::vector<std::vector<PreparedCurve>> all;
-    for (Table& t : tables_) {
-      make_unique(t.curves, t.spec);
-      all.push_back(std::move(t.curves));
-    }
-    return all;
-  }
-
- private:
-  struct Table {
-    DataSpec spec;
-    SpecimenSize size;
-    std::vector<RawTest> tests;
-    std::vector<PreparedCurve> curves;
-  };
-
-  /// @throws SceneError with all that is wrong
-  void prepare_all_tables(const std::function<void(ContactSpec&)>& decide = [](ContactSpec&) {}) {
-    for (Table& t : tables_) {
-      decide(t.spec.contact);
-      t.curves = prepare_all(t.tests, t.spec, t.size, faults_);
-    }
-    if (!faults_.empty()) throw SceneError(faults_);
-  }
-
-  bool any(const std::function<bool(const CurveAccount&)>& is) const {
-    return std::any_of(tables_.begin(), tables_.end(), [&](const Table& t) {
-      return std::any_of(t.curves.begin(), t.curves.end(), [&](const PreparedCurve& c) { return is(c.account); });
-    });
-  }
-
-  /// The largest force at which one curve begins in contact, where others begin before; 0 where all are alike.
-  double common_preload() const {
-    double most = 0.0;
-    const bool rested = any([&](const CurveAccount& a) {
-                          if (a.contact_how == "extrapolated") most = std::max(most, a.first_force);
-                          return false;
-                        }) ||
-                        any([](const CurveAccount& a) { return a.contact_how == "detected"; });
-    return rested ? most : 0.0;
-  }
-
-  std::vector<Table> tables_;
-  std::string faults_;
-};
+  const auto is_detected = [](const CurveAccount& a) { return a.contact_how == "detected"; };
+  return any(tables, is_detected) ? most : 0.0;
+}
 
 }  // namespace
 
@@ -137,14 +75,52 @@ bool of_one_test(const DataSpec& a, const DataSpec& b) {
   return what(a) == what(b);
 }
 
-std::vector<std::vector<PreparedCurve>> load_test(std::span<const DataSpec> tables, const SpecimenSize& size,
-                                                  const std::filesystem::path& base) {
-  return TestOfTables(tables, size, base).curves();
+TestFiles::TestFiles(std::span<const DataSpec> tables, const SpecimenSize& common, const std::filesystem::path& base) {
+  for (const DataSpec& table : tables) {
+    Table& t = tables_.emplace_back(Table{table, common, {}});
+    if (table.size.area) t.size.area = table.size.area;
+    if (table.size.height) t.size.height = table.size.height;
+    for (const auto& file : table.files)
+      collect(faults_, [&] { t.tests.push_back(load_raw(placed(file, base), t.spec, t.size)); });
+    if (!faults_.empty() || table.unlikely) continue;
+    for (const std::string& fault : repetition_faults(t.tests))
+      faults_.append(faults_.empty() ? "" : "\n").append(fault);
+  }
+}
+
+std::vector<std::vector<PreparedCurve>> TestFiles::curves(std::optional<ContactKind> kind) const {
+  const auto prepared = [&](bool sloped, double preload) {
+    std::string faults = faults_;
+    CurvesOfTables all;
+    for (const Table& t : tables_) {
+      DataSpec spec = t.spec;
+      if (kind) spec.contact.kind = *kind;
+      if (sloped) spec.contact.sloped = true;
+      if (preload > 0.0) spec.contact.preload = preload;
+      std::vector<PreparedCurve>& curves = all.emplace_back();
+      for (const RawTest& test : t.tests) {
+        collect(faults, [&] {
+          scene::Problems problems(test.file.string());
+          auto curve = prepare(test, spec, t.size, problems);
+          problems.throw_if_any();
+          curves.push_back(std::move(*curve));
+        });
+      }
+    }
+    if (!faults.empty()) throw SceneError(faults);
+    return all;
+  };
+  CurvesOfTables all = prepared(false, 0.0);
+  const bool sloped = any(all, [](const CurveAccount& a) { return a.sloped; });
+  if (sloped) all = prepared(true, 0.0);
+  if (const double preload = common_preload(all); preload > 0.0) all = prepared(sloped, preload);
+  for (std::size_t i = 0; i < all.size(); ++i) make_unique(all[i], tables_[i].spec);
+  return all;
 }
 
 std::vector<PreparedCurve> load_curves(const DataSpec& spec, const SpecimenSize& size,
                                        const std::filesystem::path& base) {
-  return std::move(load_test(std::span(&spec, 1), size, base).front());
+  return std::move(TestFiles(std::span(&spec, 1), size, base).curves().front());
 }
 
 }  // namespace glisson::fit

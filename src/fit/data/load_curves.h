@@ -2,11 +2,14 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "fit/data/data_spec.h"
 #include "fit/data/prepare.h"
+#include "fit/data/raw_test.h"
 
 namespace glisson::fit {
 
@@ -20,9 +23,25 @@ std::vector<PreparedCurve> load_curves(const DataSpec& spec, const SpecimenSize&
 /// Whether sections are of one test, fitted or held out: alike in what is done and measured, and in what is asked of contact.
 bool of_one_test(const DataSpec& a, const DataSpec& b);
 
-/// The curves of sections of one test. Where a curve's baseline has a slope, all of them are placed on one; where one begins
-/// in contact, all are carried to zero alike. @return one list for each section @throws SceneError as above
-std::vector<std::vector<PreparedCurve>> load_test(std::span<const DataSpec> tables, const SpecimenSize& size,
-                                                  const std::filesystem::path& base);
+/// The files of sections of one test, read once, however often their curves are prepared.
+class TestFiles {
+ public:
+  /// What is wrong with any of the files is said by curves(). @param size, base  as of load_curves
+  TestFiles(std::span<const DataSpec> tables, const SpecimenSize& size, const std::filesystem::path& base);
+
+  /// The curves. Where a curve's baseline has a slope, all of them are placed on one; where one begins in contact, all are
+  /// carried to zero alike. @param kind  of contact, in place of the sections' @return one list for each section
+  /// @throws SceneError as load_curves
+  std::vector<std::vector<PreparedCurve>> curves(std::optional<ContactKind> kind = {}) const;
+
+ private:
+  struct Table {
+    DataSpec spec;
+    SpecimenSize size;
+    std::vector<RawTest> tests;
+  };
+  std::vector<Table> tables_;
+  std::string faults_;
+};
 
 }  // namespace glisson::fit

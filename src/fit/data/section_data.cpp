@@ -35,7 +35,7 @@ KindSpec kind_of(SectionSpec section, Kind kind) {
 /// Complains of a unit that is none of the quantity's.
 void require_unit(const ColumnSpec& column, const Node& table, const std::string& key, Quantity quantity,
                   const Place& place) {
-  if (column.unit.empty() || find_unit(quantity, column.unit)) return;
+  if (column.unit.empty() || may_be(quantity, column.unit)) return;
   place.complain(*table.find(key)->find("unit"), key + ".unit",
                  "unknown unit \"" + column.unit + "\"; allowed: " + unit_names(quantity));
 }
@@ -254,7 +254,9 @@ const SectionSpec& columns_section() {
             "amount of shear, displacement over distance of the faces, in - or %");
     s.table("angle", column_section(), &ColumnsSpec::angle,
             "angle of twist of one face against the other, in rad or deg");
-    s.table("frequency", column_section(), &ColumnsSpec::frequency, "of an oscillation, in Hz, kHz or rad/s");
+    s.table("frequency", column_section(), &ColumnsSpec::frequency,
+            "of an oscillation, in Hz, kHz or rad/s; 1/s is rad/s where the column's name says angular, and is refused "
+            "elsewhere");
     s.table("force", column_section(), &ColumnsSpec::force, "force, in N, mN, µN, nN, kN, gf, kgf or lbf");
     s.table("stress", column_section(), &ColumnsSpec::stress,
             "nominal stress, force over area at rest, in Pa, kPa, MPa, N/mm², kgf/cm² or psi, instead of force; needs "

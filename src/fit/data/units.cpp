@@ -125,7 +125,7 @@ struct UnitTables {
                   {{"degrees", kDegree}, {"Grad", kDegree}, {"µrad", 1e-6}}};
   UnitTable torque{{{"N m", 1.0}, {"mN m", 1e-3}, {"µN m", 1e-6}, {"N mm", 1e-3}}};
   UnitTable frequency{{{"Hz", 1.0}, {"rad/s", 0.5 / std::numbers::pi}, {"kHz", 1e3}},
-                      {{"mHz", 1e-3}}};  // 1/s is not here: it may be Hz or rad/s
+                      {{"mHz", 1e-3}}};  // 1/s is not here: it may be Hz or rad/s (is_per_second)
 
   UnitTables() {
     for (Unit& unit : force_over_area(force, length)) stress.others.push_back(std::move(unit));
@@ -168,6 +168,13 @@ constexpr std::array kQuantities{Quantity::time,   Quantity::length, Quantity::f
                                  Quantity::stress, Quantity::strain, Quantity::stretch,
                                  Quantity::angle,  Quantity::torque, Quantity::frequency};
 
+/// Units of speeds and rates, which no column of a test is read in: machines write them beside the others.
+bool is_rate(std::string_view unit) {
+  constexpr std::array<std::string_view, 11> kNames{"1/min", "min⁻¹",  "mm/s", "mm/min", "m/s", "cm/s",
+                                                    "µm/s",  "in/min", "%/s",  "%/min",  "N/s"};
+  return is_per_second(unit) || std::find(kNames.begin(), kNames.end(), unit) != kNames.end();
+}
+
 /// `Load (N)`: what the last pair of brackets holds, where the title ends with it.
 Title bracketed(std::string_view title) {
   if (title.empty() || (title.back() != ')' && title.back() != ']')) return {};
@@ -175,6 +182,12 @@ Title bracketed(std::string_view title) {
   if (open == std::string_view::npos) return {};
   return {std::string(detail::trimmed(title.substr(0, open))),
           std::string(detail::trimmed(title.substr(open + 1, title.size() - open - 2)))};
+}
+
+/// Whether the last word about a slash is a unit itself, `1/s` of `Shear rate 1/s`, and no name and its unit, `Force/kN`.
+bool splits_a_unit(std::string_view title, std::size_t slash) {
+  const std::size_t word = title.find_last_of(" ,_", slash);
+  return word != std::string_view::npos && is_rate(spelled(title.substr(word + 1)));
 }
 
 /// What may as well be a word or a number of the name: `run 1`, `mode in`.
@@ -204,7 +217,17 @@ const Unit* find_unit(Quantity quantity, std::string_view text) {
 }
 
 bool is_unit(std::string_view text) {
-  return std::any_of(kQuantities.begin(), kQuantities.end(), [&](Quantity q) { return find_unit(q, text) != nullptr; });
+  const auto has = [&](Quantity q) { return find_unit(q, text) != nullptr; };
+  return is_rate(spelled(text)) || std::any_of(kQuantities.begin(), kQuantities.end(), has);
+}
+
+bool is_per_second(std::string_view text) {
+  constexpr std::array<std::string_view, 4> kNames{"1/s", "s⁻¹", "s^-1", "s-1"};
+  return std::find(kNames.begin(), kNames.end(), spelled(text)) != kNames.end();
+}
+
+bool may_be(Quantity quantity, std::string_view unit) {
+  return find_unit(quantity, unit) || (quantity == Quantity::frequency && is_per_second(unit));
 }
 
 Title split_title(std::string_view title) {
@@ -214,7 +237,8 @@ Title split_title(std::string_view title) {
     const std::size_t at = title.rfind(mark);
     if (at == std::string_view::npos || at == 0) continue;
     const std::string_view unit = detail::trimmed(title.substr(at + mark.size()));
-    if (!is_word(unit, mark) && is_unit(unit))
+    const bool over = mark == "/" && splits_a_unit(title, at);  // `Shear rate 1/s`: the blank before it is the mark
+    if (!over && !is_word(unit, mark) && is_unit(unit))
       return {std::string(detail::trimmed(title.substr(0, at))), std::string(unit)};
   }
   return {std::string(title), {}};

@@ -23,8 +23,12 @@ std::string unit_names(Quantity quantity);
 /// A customary unit, one composed of them (a force over a squared length, a force times a length) or one of the less usual;
 /// nullptr where there is no such unit. Letters count as written: mPa is no MPa. `um` is µm, `N/mm^2` is N/mm².
 const Unit* find_unit(Quantity quantity, std::string_view text);
-/// Whether any quantity has this unit.
+/// Whether any quantity has this unit, or it is one of a rate: `1/s`, `s⁻¹`, `mm/s`, `%/s`.
 bool is_unit(std::string_view text);
+/// Whether a unit is one over a second, `1/s`, `s^-1`, `s⁻¹`: as a frequency it is Hz to some and rad/s to others.
+bool is_per_second(std::string_view text);
+/// Whether numbers in this unit may be of a quantity: of a frequency also those per second, of which the column's name has to say more.
+bool may_be(Quantity quantity, std::string_view unit);
 
 /// The name of a column and the unit that stands with it.
 struct Title {

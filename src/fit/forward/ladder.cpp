@@ -4,6 +4,8 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <boost/random/sobol.hpp>
+#include <boost/random/uniform_01.hpp>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -23,6 +25,7 @@ namespace {
 /// Runs that are shorter than this are not broken off [s].
 constexpr double kShortest = 0.02;
 constexpr double kEver = std::numeric_limits<double>::infinity();
+constexpr const char* kSpecimen = "specimen";  // its name, for messages and for a fit that goes on
 
 /// One curve of each group; of those without a group each.
 std::vector<std::size_t> one_of_each_group(std::span<const Curve> curves) {
@@ -34,21 +37,15 @@ std::vector<std::size_t> one_of_each_group(std::span<const Curve> curves) {
   return chosen;
 }
 
-/// The start, then points of Halton's sequence within the bounds, on the scale of each parameter.
+/// The start, then points of a Sobol sequence within the bounds, on the scale of each parameter.
 std::vector<std::vector<double>> places_of(std::span<const Parameter> parameters, int count) {
-  constexpr int kPrimes[] = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37};
-  const auto radical_inverse = [](int n, int base) {
-    double value = 0.0, digit = 1.0 / base;
-    for (; n > 0; n /= base, digit /= base) value += digit * (n % base);
-    return value;
-  };
+  boost::random::sobol engine(std::max<std::size_t>(1, parameters.size()));
   std::vector<std::vector<double>> places(1);
   for (const Parameter& p : parameters) places[0].push_back(p.start);
   for (int k = 1; k <= count; ++k) {
     std::vector<double> place;
-    for (std::size_t i = 0; i < parameters.size(); ++i) {
-      const Parameter& p = parameters[i];
-      const double z = radical_inverse(k, kPrimes[i % std::size(kPrimes)]);
+    for (const Parameter& p : parameters) {
+      const double z = boost::random::uniform_01<double>()(engine);
       place.push_back(p.scale == Scale::linear ? p.low + z * (p.high - p.low) : p.low * std::pow(p.high / p.low, z));
     }
     places.push_back(std::move(place));
@@ -283,11 +280,12 @@ Ladder choose_forward(const ForwardProblem& problem) {
   const Maker make(problem);
   Ladder ladder;
   if (problem.plates) {
-    ladder.rungs.push_back({.name = "specimen that bulges", .failure = {}, .model = make.barrel({})});
+    ladder.rungs.push_back(
+        {.kind = RungKind::barrel, .name = "specimen that bulges", .failure = {}, .model = make.barrel({})});
     return ladder;
   }
   if (problem.layer) {
-    ladder.rungs.push_back({.name = "layer", .failure = {}, .model = make.layer({})});
+    ladder.rungs.push_back({.kind = RungKind::layer, .name = "layer", .failure = {}, .model = make.layer({})});
     return ladder;
   }
   const auto only_specimen = [&](const std::optional<Specimen>& size) {
@@ -296,7 +294,7 @@ Ladder choose_forward(const ForwardProblem& problem) {
       throw std::invalid_argument(
           "[forward] kind = \"uniaxial\" needs a block or cylinder of one tissue between smooth plates, and "
           "parameters of [tissue] alone; take kind = \"scene\" or \"auto\"");
-    ladder.rungs.push_back({.name = "specimen", .failure = {}, .model = specimen});
+    ladder.rungs.push_back({.kind = RungKind::specimen, .name = kSpecimen, .failure = {}, .model = specimen});
   };
   if (problem.specimen) {
     only_specimen(problem.specimen);
@@ -311,7 +309,8 @@ Ladder choose_forward(const ForwardProblem& problem) {
     only_specimen(size);
     return ladder;
   }
-  ladder.rungs.push_back({.name = "the scene", .failure = {}, .model = make.with_offsets(scene)});
+  ladder.rungs.push_back(
+      {.kind = RungKind::scene, .name = "the scene", .failure = {}, .model = make.with_offsets(scene)});
   if (problem.spec.kind == ForwardKind::scene) return ladder;
 
   Comparison comparison{problem, ladder, true_forces(ladder)};
@@ -327,8 +326,9 @@ Ladder choose_forward(const ForwardProblem& problem) {
     const Rung& last = ladder.rungs.back();
     if (last.serves() && (known || last.cost < patience(ladder))) ladder.chosen = ladder.rungs.size() - 1;
   };
-  if (auto specimen = size && wanted("specimen") ? make.specimen(*size) : nullptr)
-    try_out({.name = "specimen", .failure = {}, .model = specimen}, [&] { return specimen; });
+  if (auto specimen = size && wanted(kSpecimen) ? make.specimen(*size) : nullptr)
+    try_out({.kind = RungKind::specimen, .name = kSpecimen, .failure = {}, .model = specimen},
+            [&] { return specimen; });
   double step = 0.0;
   bool heavier_serves = false;
   for (ForwardCandidate& c : forward_candidates(variant, problem.spec)) {
@@ -337,7 +337,8 @@ Ladder choose_forward(const ForwardProblem& problem) {
     if (own_steps && step == 0.0) step = make.explicit_step(ladder.compared[0], ladder.places);
     if (own_steps) c.adjust = heavier_tissue(c.factor, step * std::sqrt(c.factor));
     const double longest = known ? kEver : std::max(kShortest, patience(ladder));
-    try_out({.name = c.name,
+    try_out({.kind = RungKind::changed_scene,
+             .name = c.name,
              .failure = {},
              .model = make.with_offsets(make.scene(c.adjust, kEver, own_steps)),
              .integrator = c.integrator,

@@ -18,9 +18,19 @@
 
 namespace glisson::fit {
 
+/// What a model runs.
+enum class RungKind {
+  scene,          ///< the scene as it is written
+  changed_scene,  ///< with other steps or a heavier tissue
+  specimen,       ///< a material point, or a specimen that deforms alike all over
+  barrel,         ///< a cylinder that bulges between its plates
+  layer           ///< a layer under an indenter
+};
+
 /// A model that was tried.
 struct Rung {
-  std::string name;     ///< "specimen", "implicit, 40 steps" …
+  RungKind kind = RungKind::scene;
+  std::string name;     ///< of its kind and steps: "specimen", "implicit, 40 steps" …
   double cost = 0.0;    ///< of one run of every curve compared, at the start [s]
   double error = 0.0;   ///< largest rms difference from the scene at the start [N]
   double share = 0.0;   ///< the largest of the places looked at, over the error allowed there; below 1 it serves [-]
@@ -29,6 +39,7 @@ struct Rung {
   Integrator integrator{};  ///< of `steps`
   int steps = 0;            ///< equal ones that every run has; 0: the model chooses its steps otherwise
   bool serves() const { return failure.empty() && share < 1.0; }
+  bool runs_scene() const { return kind == RungKind::scene || kind == RungKind::changed_scene; }
 };
 
 struct Ladder {

@@ -61,16 +61,14 @@ double error_of_others(const CurvesOfTables& tables) {
 }
 
 /// The curves of the sections of a test, with the contact that leaves them nearer to each other where it is to be chosen.
-CurvesOfTables loaded(std::vector<DataSpec> tables, const SpecimenSize& size, const std::filesystem::path& base) {
-  const auto with = [&](ContactKind kind) {
-    for (DataSpec& table : tables) table.contact.kind = kind;
-    return load_test(tables, size, base);
-  };
-  if (tables.front().contact.kind != ContactKind::automatic) return load_test(tables, size, base);
-  CurvesOfTables detected = with(ContactKind::detect);
+CurvesOfTables loaded(const std::vector<DataSpec>& tables, const SpecimenSize& size,
+                      const std::filesystem::path& base) {
+  const TestFiles files(tables, size, base);
+  if (tables.front().contact.kind != ContactKind::automatic) return files.curves();
+  CurvesOfTables detected = files.curves(ContactKind::detect);
   const double by_detection = error_of_others(detected);
   if (!std::isfinite(by_detection)) return detected;
-  CurvesOfTables recorded = with(ContactKind::none);
+  CurvesOfTables recorded = files.curves(ContactKind::none);
   const double as_recorded = error_of_others(recorded);
   CurvesOfTables& nearer = by_detection < as_recorded ? detected : recorded;
   for (auto& table : nearer) {
@@ -96,7 +94,7 @@ CurvesOfTables load_by_tests(const std::vector<DataSpec>& parts, const SpecimenS
       members.push_back(i);
       tables.push_back(parts[i]);
     }
-    CurvesOfTables curves = loaded(std::move(tables), size, base);
+    CurvesOfTables curves = loaded(tables, size, base);
     for (std::size_t k = 0; k < members.size(); ++k) all[members[k]] = std::move(curves[k]);
   }
   return all;

@@ -39,7 +39,7 @@ FitForecast forecast_of(const LawSearch& search, const FitSpec& spec, std::size_
   const auto left = [known](std::size_t count) { return count > known ? count - known : 0; };
   const std::size_t walks = 2 * all * kProfilePoints * kProfileIterations * (2 * p) +
                             static_cast<std::size_t>(spec.proof.bootstrap) * kReplicateIterations * step;
-  const bool spared = ladder.taken().name != "specimen";
+  const bool spared = ladder.taken().kind != RungKind::specimen;
   const std::size_t cubic = LocalModel::runs_for(all) + 2 * all;
   const std::size_t plans = spec.proof.next ? kPlans * jacobian : 0, proof = spec.proof.profiles ? walks : 0;
   FitForecast forecast{.law = search.law().name, .forward = ladder.taken().name};

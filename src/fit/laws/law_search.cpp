@@ -49,6 +49,22 @@ void require_fitting(const LawMemory& memory, std::size_t parameters, const std:
   }
 }
 
+/// What a model that was asked for is.
+std::string asked_for(const Rung& taken, const std::optional<SpecimenSpec>& specimen) {
+  switch (taken.kind) {
+    case RungKind::layer:
+      return "a layer under an indenter.";
+    case RungKind::barrel:
+      return "a cylinder that bulges between its plates.";
+    case RungKind::specimen:
+      return specimen && specimen->shape == SpecimenShape::point ? "a material point." : "a homogeneous specimen.";
+    case RungKind::scene:
+    case RungKind::changed_scene:
+      break;
+  }
+  return taken.name + ", as asked for.";
+}
+
 }  // namespace
 
 SceneText scene_of(const FitSpec& spec, const LawSpec& law) {
@@ -122,7 +138,7 @@ void LawSearch::take_model(std::size_t rung) {
                                        spec_.search.loss);
 }
 
-bool LawSearch::dear() const { return !forward_.plates && !forward_.layer && ladder_.taken().name != "specimen"; }
+bool LawSearch::dear() const { return ladder_.taken().runs_scene(); }
 
 RunsAtOnce LawSearch::runs_at_once() const {
   const std::vector<Curve>& fitted = problem_->curves();
@@ -202,7 +218,7 @@ void LawSearch::compare_specimen() {
   try {
     const Ladder ladder = choose_forward(there);
     const auto own = std::find_if(ladder.rungs.begin(), ladder.rungs.end(),
-                                  [](const Rung& r) { return r.name == "specimen" && r.failure.empty(); });
+                                  [](const Rung& r) { return r.kind == RungKind::specimen && r.failure.empty(); });
     if (own == ladder.rungs.end()) return;
     specimen_error_ = own->error;
     second_look_ =
@@ -264,8 +280,7 @@ void LawSearch::improve(std::span<const double> scaled) {
 std::shared_ptr<const Model> LawSearch::model_of(std::vector<Curve> curves) const {
   ForwardProblem other = problem_at_optimum(std::move(curves));
   if (std::shared_ptr<const Model> same = model_for(ladder_, forward_, other)) return same;
-  const bool as_written = ladder_.chosen == 0 && ladder_.taken().name != "specimen";
-  if (as_written) other.spec.kind = ForwardKind::scene;
+  if (ladder_.taken().kind == RungKind::scene) other.spec.kind = ForwardKind::scene;
   return choose_forward(other).model();
 }
 
@@ -287,12 +302,7 @@ std::string LawSearch::forward_words() const {
   const Rung& taken = ladder_.taken();
   std::string words;
   if (forward_.spec.kind != ForwardKind::automatic) {
-    words = forward_.layer             ? "Forward model: a layer under an indenter."
-            : forward_.plates          ? "Forward model: a cylinder that bulges between its plates."
-            : taken.name == "specimen" ? spec_.specimen && spec_.specimen->shape == SpecimenShape::point
-                                             ? "Forward model: a material point."
-                                             : "Forward model: a homogeneous specimen."
-                                       : "Forward model: " + taken.name + ", as asked for.";
+    words = "Forward model: " + asked_for(taken, spec_.specimen);
   } else if (ladder_.chosen == 0) {
     words = "Forward model: the scene itself; no cheaper model stayed within the noise of the curves.";
   } else {

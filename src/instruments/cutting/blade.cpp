@@ -150,7 +150,7 @@ void Blade::archive(Archive& ar) {
   for (const EdgePiece& piece : pieces) {
     ar.check(mesh_ != nullptr && piece.tet < mesh_->tets.size() && (removed_.empty() || removed_[piece.tet] == 0));
   }
-  pieces_ = std::move(pieces);
+  if (ar.reads()) pieces_ = std::move(pieces);
   if (cutter_) cutter_->archive(ar);
 }
 

@@ -84,6 +84,18 @@ void look_at_tools(Collector& to, const Variant& v, const TetMesh& mesh) {
   }
 }
 
+/// No time for any trial.
+class NoTrials : public TrialTime {
+ public:
+  bool has_time(double) const override { return false; }
+};
+
+std::vector<Advice> on_all(const Variant& variant, const VariantAtRest& rest, const MeshLoader& load, TrialTime& time) {
+  std::vector<Advice> all = advise_on_body(variant, rest);
+  for (Advice& one : advise_on_step(variant, rest, load, time)) all.push_back(std::move(one));
+  return all;
+}
+
 }  // namespace
 }  // namespace advice
 
@@ -128,10 +140,12 @@ std::vector<Advice> advise_on_laws(std::span<const Variant> variants) {
 
 std::vector<Advice> advise(const Variant& variant, const MeshLoader& load) {
   TrialTime time;
-  const VariantAtRest rest(variant, build_variant(variant, load).simulation);
-  std::vector<Advice> all = advise_on_body(variant, rest);
-  for (Advice& one : advise_on_step(variant, rest, load, time)) all.push_back(std::move(one));
-  return all;
+  return advice::on_all(variant, {variant, build_variant(variant, load).simulation}, load, time);
+}
+
+std::vector<Advice> advise_at_rest(const Variant& variant, const Simulation& simulation) {
+  advice::NoTrials none;
+  return advice::on_all(variant, {variant, simulation}, {}, none);
 }
 
 }  // namespace glisson

@@ -3,6 +3,7 @@
 // Programs older or newer than the page, interrupted runs and NaN (written as null) must still give a page:
 // whatever is missing becomes empty here, so that no other file has to ask.
 import type {
+  AdviceData,
   ChartSpec,
   CheckData,
   Columns,
@@ -66,6 +67,7 @@ function readScene(raw: Raw, index: number): SceneData {
     title: text(raw["title"]) || name,
     description: text(raw["description"]),
     notes: list(raw["notes"]).map(text),
+    advice: list(raw["advice"]).map((one) => readAdvice(record(one))),
     source: text(raw["source"]),
     variants: list(raw["variants"]).map((variant, at) => readVariant(record(variant), at)),
     charts: list(raw["charts"]).map((chart) => readChart(record(chart))),
@@ -244,6 +246,15 @@ function readTable(raw: Raw): TableData {
     columns: list(raw["columns"]).map(text),
     rows: list(raw["rows"]).map((row) => list(row).map((cell) => (typeof cell === "number" ? cell : text(cell)))),
     note: text(raw["note"]),
+  };
+}
+
+function readAdvice(raw: Raw): AdviceData {
+  return {
+    rule: text(raw["rule"]),
+    kind: raw["kind"] === "warning" ? "warning" : "remark",
+    text: text(raw["text"]),
+    variants: list(raw["variants"]).map(text),
   };
 }
 

@@ -55,6 +55,7 @@ export function sceneSection(scene: SceneData, id: string, titled: boolean): Sce
       ? h("p", { class: "muted" }, "This scene has no variants to show.")
       : null,
     few ? null : block("Choices", notes(scene)),
+    block("Advice", advice(scene)),
     block("Numbers", results(scene)),
     block("Scene", sourceBlock(`${scene.name}.toml`, scene.source)),
   );
@@ -97,6 +98,25 @@ function notes(scene: SceneData): HTMLElement | null {
     { class: "notes", "aria-label": "Choices" },
     h("h3", {}, "Choices and their reasons"),
     h("ul", {}, ...scene.notes.map((note) => h("li", {}, note))),
+  );
+}
+
+/** What `glisson check` says of the scene; of which variants, where it is not all of them. */
+function advice(scene: SceneData): HTMLElement | null {
+  if (scene.advice.length === 0) return null;
+  const of = (variants: readonly string[]) =>
+    variants.length === 0 || variants.length === scene.variants.length ? "" : `${variants.join(", ")}: `;
+  return h(
+    "aside",
+    { class: "notes advice", "aria-label": "Advice" },
+    h("h3", {}, "Advice on mesh, tissues, tools and steps"),
+    h(
+      "ul",
+      {},
+      ...scene.advice.map((one) =>
+        h("li", {}, h("strong", {}, one.kind === "warning" ? "Warning. " : ""), of(one.variants), one.text),
+      ),
+    ),
   );
 }
 
