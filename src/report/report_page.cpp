@@ -57,9 +57,22 @@ std::string machine_text() {
   return fmt::format("{} × {}", std::max(1u, std::thread::hardware_concurrency()), processor_name());
 }
 
-nlohmann::json scene_json(const Scene& scene, const std::vector<const VariantRecorder*>& variants,
+nlohmann::json scene_json(const Scene& scene, nlohmann::json variants, nlohmann::json charts,
                           const SceneExtras& extras) {
   const std::string name = scene.file.stem().string();
+  return {{"name", name},
+          {"title", scene.title.empty() ? name : scene.title},
+          {"description", scene.description},
+          {"notes", scene.notes},
+          {"source", scene.source},
+          {"variants", std::move(variants)},
+          {"charts", std::move(charts)},
+          {"tables", extras.tables},
+          {"checks", extras.checks}};
+}
+
+nlohmann::json scene_json(const Scene& scene, const std::vector<const VariantRecorder*>& variants,
+                          const SceneExtras& extras) {
   const double reach = common_law_reach(variants);
   nlohmann::json list = nlohmann::json::array();
   for (const VariantRecorder* v : variants) list.push_back(v->json(reach));
@@ -69,15 +82,7 @@ nlohmann::json scene_json(const Scene& scene, const std::vector<const VariantRec
     if (!chart.value.column.empty()) charts.back()["map"] = map_json(chart, variants);
   }
   for (const nlohmann::json& chart : extras.charts) charts.push_back(chart);
-  return {{"name", name},
-          {"title", scene.title.empty() ? name : scene.title},
-          {"description", scene.description},
-          {"notes", scene.notes},
-          {"source", scene.source},
-          {"variants", std::move(list)},
-          {"charts", std::move(charts)},
-          {"tables", extras.tables},
-          {"checks", extras.checks}};
+  return scene_json(scene, std::move(list), std::move(charts), extras);
 }
 
 nlohmann::json report_json(const std::string& title, const std::string& subtitle, nlohmann::json scenes) {
