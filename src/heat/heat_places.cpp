@@ -6,6 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "base/text.h"
 #include "heat/share_below.h"
@@ -24,6 +25,22 @@ double mean_edge(const TetMesh& mesh) {
 std::string in_mm(const Vec3d& x) {
   const auto text = [](double m) { return detail::number_text(1e3 * m); };
   return "(" + text(x.x) + ", " + text(x.y) + ", " + text(x.z) + ") mm";
+}
+
+/// The part of a line that lies in the box around the body, as shares of it; nothing: the second is not above the first.
+std::pair<double, double> within_box(const TetMesh& mesh, const Vec3d& from, const Vec3d& to) {
+  const auto [low, high] = box_of(mesh);
+  double begin = 0.0, end = 1.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double way = to[i] - from[i];
+    if (way == 0.0) {
+      if (from[i] < low[i] || from[i] > high[i]) end = begin;
+      continue;
+    }
+    const double a = (low[i] - from[i]) / way, b = (high[i] - from[i]) / way;
+    begin = std::max(begin, std::min(a, b)), end = std::min(end, std::max(a, b));
+  }
+  return {begin, end};
 }
 
 /// Share of a stretch on which what is linear between two values is below a level.
@@ -59,22 +76,21 @@ std::vector<double> HeatPoints::read(std::span<const double> values) const {
 }
 
 HeatLine::HeatLine(const TetMesh& mesh, const Vec3d& from, const Vec3d& to) {
-  const Vec3d way = to - from;
+  if (!(norm(to - from) > 0.0))
+    throw std::invalid_argument("heat: a line from " + in_mm(from) + " to itself has no length");
+  const auto [begin, end] = within_box(mesh, from, to);
+  const Vec3d first = from + (to - from) * begin, way = (to - from) * (end - begin);
   const double length = norm(way);
-  if (!(length > 0.0)) throw std::invalid_argument("heat: a line from " + in_mm(from) + " to itself has no length");
   const int n = std::max(1, static_cast<int>(std::ceil(kSamplesAnEdge * length / mean_edge(mesh))));
   spacing_ = length / n;
   const detail::TetLocator locator(mesh, {});
   std::vector<Vec3d> inside;
   bool last = false;
-  for (int k = 0; k <= n; ++k) {
-    const Vec3d x = from + way * (static_cast<double>(k) / n);
+  for (int k = 0; end > begin && k <= n; ++k) {
+    const Vec3d x = first + way * (static_cast<double>(k) / n);
     const bool here = locator.locate(x).has_value();
-    if (!inside.empty()) joined_.push_back(here && last ? 1 : 0);
-    if (here)
-      inside.push_back(x);
-    else if (!joined_.empty())
-      joined_.pop_back();
+    if (here && !inside.empty()) joined_.push_back(last ? 1 : 0);
+    if (here) inside.push_back(x);
     last = here;
   }
   if (inside.size() < 2)

@@ -16,20 +16,23 @@ namespace {
 
 constexpr double kBoils = 100.0;  // [°C]
 
-std::vector<Field> vertex_fields_of(const HeatSimulation& s) {
+std::vector<Field> vertex_fields_of(const HeatSimulation& s, const std::vector<double>& isotherms) {
   const auto field = [](std::string name, auto begin, auto end) {
     return Field{.name = std::move(name), .components = 1, .values = {begin, end}};
   };
   const HeatHistory& h = s.state().history;
   const std::vector<double> frozen = s.frozen_share();
-  return {field("temperature_C", s.temperature().begin(), s.temperature().end()),
-          field("frozen", frozen.begin(), frozen.end()),
-          field("coldest_C", h.coldest.begin(), h.coldest.end()),
-          field("hottest_C", h.hottest.begin(), h.hottest.end()),
-          field("cem43_min", h.cem43.begin(), h.cem43.end()),
-          field("damage", h.damage.begin(), h.damage.end()),
-          field("freezings", h.freezings.begin(), h.freezings.end()),
-          field("dead", h.dead.begin(), h.dead.end())};
+  std::vector<Field> fields{field("temperature_C", s.temperature().begin(), s.temperature().end()),
+                            field("frozen", frozen.begin(), frozen.end()),
+                            field("coldest_C", h.coldest.begin(), h.coldest.end()),
+                            field("hottest_C", h.hottest.begin(), h.hottest.end()),
+                            field("cem43_min", h.cem43.begin(), h.cem43.end()),
+                            field("damage", h.damage.begin(), h.damage.end()),
+                            field("freezings", h.freezings.begin(), h.freezings.end()),
+                            field("dead", h.dead.begin(), h.dead.end())};
+  for (std::size_t k = 0; k < h.below.size(); ++k)
+    fields.push_back(field(fmt::format("below_{:g}_C_s", isotherms[k]), h.below[k].begin(), h.below[k].end()));
+  return fields;
 }
 
 }  // namespace
@@ -89,7 +92,7 @@ void HeatRecorder::on_frame(const HeatSimulation& s) {
     TetMesh mesh = s.mesh();
     mesh.regions.resize(mesh.tets.size(), 0);
     try {
-      write_vtu(options_.folder / file, mesh, {}, vertex_fields_of(s), {});
+      write_vtu(options_.folder / file, mesh, {}, vertex_fields_of(s, variant_.heat->options.isotherms), {});
       frames_.emplace_back(s.time(), file);
       write_pvd(options_.folder / "frames.pvd", frames_);
     } catch (const std::runtime_error& error) {

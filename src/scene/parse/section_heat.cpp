@@ -182,8 +182,8 @@ const SectionSpec& heat_probe_section() {
       if (!(length > 0.0)) place.complain(*table.find("to_m"), "to_m", "is the tip itself; give a point up the shaft");
       if (const Node* active = table.find("active_length_mm"); active && *x.active_length > length * (1.0 + 1e-9)) {
         place.complain(*active, "active_length_mm",
-                       show(1e3 * *x.active_length) + " mm is longer than the probe, " + detail::number_text(1e3 * length) +
-                           " mm from `from_m` to `to_m`; move `to_m` up the shaft");
+                       show(1e3 * *x.active_length) + " mm is longer than the probe, " +
+                           detail::number_text(1e3 * length) + " mm from `from_m` to `to_m`; move `to_m` up the shaft");
       }
     });
     return s.spec();
