@@ -63,6 +63,13 @@ void check_heat_alone(const Variant& variant, const Node& experiment, Problems& 
           given->where, key,
           "belongs to mechanics, and a scene with [heat] is one of heat alone so far; leave it out, or [heat]");
   }
+  const Node* regions = experiment.find("region");
+  for (std::size_t i = 0; regions && i < regions->array()->size(); ++i) {
+    const Node* tissue = (*regions->array())[i].find("tissue");
+    if (tissue && !tissue->table()->empty())
+      problems.add(tissue->where, "region." + std::to_string(i) + ".tissue",
+                   "belongs to mechanics; give a [[heat.tissue]] with `region` = the name of this one");
+  }
   const Node* output = experiment.find("output");
   for (const char* key : {"sample_rate_hz", "stored_energy"}) {
     if (const Node* given = output ? output->find(key) : nullptr)

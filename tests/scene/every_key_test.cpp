@@ -606,6 +606,7 @@ name = "ice"
 from_m = [0, 0, 0]
 to_m = [0.02, 0, 0]
 temperature_C = -2
+above_C = -30
 [[heat.isotherm]]
 name = "kill"
 temperature_C = -40
@@ -671,6 +672,7 @@ TEST(EveryKey, OfHeatIsRead) {
   EXPECT_EQ(h.sensors.at(1).count, 4);
   EXPECT_EQ(h.sensors.at(2).region, "core");
   EXPECT_EQ(h.fronts.at(0).temperature, -2.0);
+  EXPECT_EQ(h.fronts[0].above, -30.0);
   EXPECT_EQ(h.isotherms.at(0).temperature, -40.0);
   EXPECT_EQ(h.isotherms[0].region, "core");
   EXPECT_EQ(h.isotherms[0].plane->normal, (Vec3d{0, 1, 1}));

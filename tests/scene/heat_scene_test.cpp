@@ -137,6 +137,9 @@ TEST(HeatScene, RefusesByName) {
   EXPECT_THAT(message_of(kBox + kHeat + "[[heat.tissue]]\ndensity_kg_m3 = 1000\nconductivity_W_m_K = 0.5\n"),
               HasSubstr("the tissue lacks `frozen_conductivity_W_m_K`, `specific_heat_J_kg_K`"));
   EXPECT_THAT(message_of(kBox + kHeat), HasSubstr("heat: missing key `tissue`"));
+  EXPECT_THAT(message_of(good + "[[region]]\nname = \"a\"\nsphere_m = { center = [0, 0, 0], radius = 1 }\n"
+                                "tissue.density_kg_m3 = 1000\n"),
+              HasSubstr("region.0.tissue: belongs to mechanics"));
   EXPECT_THAT(message_of(good + "[motion]\nduration_s = 1\n"), HasSubstr("motion: belongs to mechanics"));
   EXPECT_THAT(message_of(good + "[[heat.boundary]]\nset = \"x_mni\"\ntemperature_C = 0\n"), HasSubstr("\"x_min\""));
   EXPECT_THAT(
@@ -144,6 +147,9 @@ TEST(HeatScene, RefusesByName) {
           good +
           "[[heat.sensor]]\nname = \"a\"\npoint_m = [0, 0, 0]\n[[heat.sensor]]\nname = \"A\"\npoint_m = [0, 0, 0]\n"),
       HasSubstr("is taken"));
+  const std::string front = "[[heat.front]]\nfrom_m = [0, 0, 0]\nto_m = [0.01, 0, 0]\n";
+  EXPECT_THAT(message_of(good + front + "above_C = -40\n"), HasSubstr("needs `temperature_C` with it"));
+  EXPECT_THAT(message_of(good + front + "above_C = 0\ntemperature_C = -40\n"), HasSubstr("nothing lies between them"));
   EXPECT_THAT(message_of(good + "[[check]]\nwhat = \"w\"\ncolumn = \"c\"\nexpected = 1\n"),
               HasSubstr("needs `tolerance`"));
   EXPECT_THAT(message_of(good + "[[check]]\nwhat = \"w\"\ncolumn = \"c\"\nexpected = 1\ntolerance = 1\nat_most = 3\n"),
@@ -191,6 +197,8 @@ TEST(HeatScene, RunsAsTheSimulationDoes) {
       "[[heat.sensor]]\nname = \"row\"\nfrom_m = [0.02, 0.02, 0.02]\nto_m = [0.04, 0.02, 0.02]\ncount = 3\n"
       "[[heat.sensor]]\nname = \"core\"\nregion = \"core\"\n"
       "[[heat.front]]\nname = \"ice\"\nfrom_m = [0, 0.02, 0.02]\nto_m = [0.04, 0.02, 0.02]\ntemperature_C = 0\n"
+      "[[heat.front]]\nname = \"shell\"\nfrom_m = [0, 0.02, 0.02]\nto_m = [0.04, 0.02, 0.02]\ntemperature_C = "
+      "20\nabove_C = 0\n"
       "[[heat.isotherm]]\nname = \"cold\"\ntemperature_C = 20\nplane_m = { point = [0.02, 0.02, 0.02] }\n"
       "[output]\nframes = 3\n";
   const Samples run = run_of(scene);
@@ -227,6 +235,9 @@ TEST(HeatScene, RunsAsTheSimulationDoes) {
   EXPECT_EQ(run.at_end("dead_core_m3"), s.dead_volume(core));
   EXPECT_EQ(run.at_end("cold_volume_m3"), isotherm_extent(s.mesh(), s.temperature(), 20.0).volume);
   EXPECT_EQ(run.at_end("blood_J"), s.ledger().blood);
+  const HeatLine across(s.mesh(), {0, 0.02, 0.02}, {0.04, 0.02, 0.02});
+  EXPECT_EQ(run.at_end("shell_m"),
+            across.length_below(s.temperature(), 20.0) - across.length_below(s.temperature(), 0.0));
   EXPECT_GT(run.at_end("cold_area_m2"), 0.0);
   EXPECT_LT(run.summary.lowest_C, 0.0);
   EXPECT_LT(std::abs(run.at_end("imbalance_J")), 1e-9 * std::abs(run.at_end("sources_J")));

@@ -40,7 +40,7 @@ class BuiltHeat {
   };
   struct Front {
     HeatLine line;
-    std::optional<double> temperature;
+    std::optional<double> temperature, above;
   };
   struct Isotherm {
     double temperature = 0.0;

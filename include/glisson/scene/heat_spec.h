@@ -159,6 +159,7 @@ struct HeatFrontSpec {
   std::string name = "front";
   Vec3d from{}, to{};                 ///< [m]
   std::optional<double> temperature;  ///< [°C]; none: the share of tissue that is frozen
+  std::optional<double> above;        ///< [°C]; what is colder does not count
   std::string origin;
 
   template <class Take>
@@ -171,6 +172,11 @@ struct HeatFrontSpec {
                       "the length of the line that is colder than this")
                     .keyed("temperature_C")
                     .otherwise("the length that is frozen, by the share of ice at each place")
+                    .advise("temperatures are in °C, not in K"),
+                field("above", &F::above, "°C", between(-200, 200),
+                      "only what is not colder than this counts: the length between two isotherms")
+                    .keyed("above_C")
+                    .otherwise("all of it")
                     .advise("temperatures are in °C, not in K"),
                 no_key("origin", &F::origin));
   }

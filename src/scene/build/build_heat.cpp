@@ -205,7 +205,8 @@ void BuiltHeat::add_volumes(const Variant& variant) {
     column("frozen_" + x.region + "_m3"), column("dead_" + x.region + "_m3");
   }
   for (const HeatFrontSpec& x : heat_of(variant).fronts) {
-    fronts_.push_back({placed(variant, x.origin, [&] { return HeatLine(mesh, x.from, x.to); }), x.temperature});
+    fronts_.push_back(
+        {placed(variant, x.origin, [&] { return HeatLine(mesh, x.from, x.to); }), x.temperature, x.above});
     column(x.name + "_m");
   }
   for (const HeatIsothermSpec& x : heat_of(variant).isotherms) {
@@ -242,8 +243,10 @@ HeatSample BuiltHeat::read() const {
   for (const int region : regions_)
     row.insert(row.end(), {simulation.frozen_volume(region), simulation.dead_volume(region)});
   const std::vector<double> frozen = fronts_.empty() ? std::vector<double>() : simulation.frozen_share();
-  for (const Front& x : fronts_)
-    row.push_back(x.temperature ? x.line.length_below(t, *x.temperature) : x.line.integral(frozen));
+  for (const Front& x : fronts_) {
+    const double colder = x.temperature ? x.line.length_below(t, *x.temperature) : x.line.integral(frozen);
+    row.push_back(x.above ? colder - x.line.length_below(t, *x.above) : colder);
+  }
   for (const Isotherm& x : isotherms_) {
     const IsothermExtent extent = isotherm_extent(simulation.mesh(), t, x.temperature);
     const Vec3d size = extent.high - extent.low;

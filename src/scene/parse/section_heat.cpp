@@ -232,6 +232,11 @@ const SectionSpec& heat_front_section() {
     s.finish([](HeatFrontSpec& x, const Node& table, const Place& place) {
       x.origin = place.text();
       check_name(table, x.name, place);
+      const Node* above = table.find("above_C");
+      if (above && !x.temperature)
+        place.complain(*above, "above_C", "needs `temperature_C` with it, the warmer isotherm");
+      else if (above && *x.above >= *x.temperature)
+        place.complain(*above, "above_C", "is not below `temperature_C`; nothing lies between them");
     });
     return s.spec();
   }();
