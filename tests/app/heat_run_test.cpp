@@ -73,6 +73,9 @@ TEST_F(HeatRun, LeavesTablesFramesAndChecks) {
     if (field.name != "temperature_C") continue;
     EXPECT_NEAR(*std::min_element(field.values.begin(), field.values.end()), h["lowest_C"].back(), 1e-9);
   }
+  const Outcome view = run({"view", "o"});
+  EXPECT_THAT(view, Exits(2));
+  EXPECT_THAT(view.err, ::testing::HasSubstr("a run of heat"));
   EXPECT_THAT(run({"run", "s.toml", "--out", "o", "--quiet"}), Exits(0))
       << "a second run replaces all files of the first";
 }
