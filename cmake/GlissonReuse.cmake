@@ -8,7 +8,7 @@
 #
 # A folder that is absent, half made, of another compiler, version, flags or libraries, or that cannot be built, is left alone
 # and everything is compiled here.
-set(glisson_offered glisson_options glisson glisson_mesher glisson_scene glisson_io glisson_fit glisson_report glisson_fit_files)
+set(glisson_offered glisson_options glisson glisson_heat glisson_mesher glisson_scene glisson_io glisson_fit glisson_report glisson_fit_files)
 
 function(glisson_describe_build out)
   string(TOUPPER "${CMAKE_BUILD_TYPE}" type)

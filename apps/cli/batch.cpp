@@ -2,14 +2,11 @@
 #include "cli/batch.h"
 
 #include <algorithm>
-#include <atomic>
-#include <exception>
-#include <mutex>
 #include <numeric>
-#include <thread>
 #include <vector>
 
 #include "cli/progress.h"
+#include "cli/side_by_side.h"
 #include "program/interrupt.h"
 #include "report/summary_json.h"
 
@@ -70,32 +67,6 @@ std::vector<std::size_t> longest_first(const std::vector<Job>& jobs) {
     return likely_cost(jobs[a].variant) > likely_cost(jobs[b].variant);
   });
   return order;
-}
-
-/// Runs `work(i)` for every i in `order`, `threads` at a time, until the stop flag is set. The first exception
-/// sets it and is thrown again at the end.
-template <class Work>
-void run_side_by_side(const std::vector<std::size_t>& order, int threads, Work work) {
-  std::atomic<std::size_t> next{0};
-  std::mutex mutex;
-  std::exception_ptr failure;
-  const auto worker = [&] {
-    for (std::size_t i = next++; i < order.size() && !stop_flag(); i = next++) {
-      try {
-        work(order[i]);
-      } catch (...) {
-        const std::lock_guard lock(mutex);
-        if (!failure) failure = std::current_exception();
-        stop_flag() = true;
-      }
-    }
-  };
-  {
-    std::vector<std::jthread> others;
-    for (int i = 1; i < threads; ++i) others.emplace_back(worker);
-    worker();
-  }
-  if (failure) std::rethrow_exception(failure);
 }
 
 }  // namespace

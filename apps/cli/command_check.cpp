@@ -15,6 +15,7 @@
 #include "cli/check_clock.h"
 #include "cli/check_steps.h"
 #include "cli/commands.h"
+#include "cli/heat_scene.h"
 #include "cli/progress.h"
 #include "cli/tissue_text.h"
 #include "glisson/scene/body_places.h"
@@ -257,6 +258,10 @@ int check_all(const Scene& scene, const CheckOptions& options, CheckClock& clock
 int check(const CheckOptions& options) {
   const Scene scene = open_scene(options.scene);
   say("{}: {}\n", scene.file.string(), scene.title);
+  if (is_heat_scene(scene)) {
+    MeshCache meshes(false);
+    return check_heat_scene(scene, meshes.loader());
+  }
   std::vector<std::string> names;
   for (const Variant& variant : scene.variants) names.push_back(variant.name);
   CheckClock clock(std::move(names));

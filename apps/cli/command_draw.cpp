@@ -115,7 +115,8 @@ void add_picture(CLI::App& program, Action& action) {
   command->add_option("--variant", options->variant, "default: the first");
   command
       ->add_option("--colour,--color", options->colour,
-                   "displacement, von_mises, pressure, contact_pressure, s, q, jacobian or tissue")
+                   "displacement, von_mises, pressure, contact_pressure, s, q, jacobian or tissue; of a run of heat "
+                   "temperature (its default), coldest, frozen or dead")
       ->capture_default_str();
   command->add_option("--cut", options->cut, "opens the body there: x=0, y=20mm, z=0.03 (metres)");
   command->add_flag("--flip", options->flip, "takes the other side away");

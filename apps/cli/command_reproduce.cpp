@@ -163,6 +163,7 @@ std::vector<Job> jobs_of(const std::vector<Figure>& figures, const fs::path& fol
   for (const Figure& f : figures) {
     for (const Variant& variant : f.scene.variants) {
       RecorderOptions recorder{.folder = folder / f.name / variant.name, .scene = f.name, .threads = threads};
+      recorder.checks = checks_of(f.scene, variant.name);
       jobs.push_back({.name = f.name + "/" + variant.name, .variant = variant, .recorder = recorder, .also = nullptr});
     }
   }

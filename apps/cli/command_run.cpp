@@ -6,8 +6,10 @@
 
 #include "cli/batch.h"
 #include "cli/commands.h"
+#include "cli/heat_scene.h"
 #include "cli/run_end.h"
 #include "glisson/scene/advice.h"
+#include "glisson/scene/heat_run.h"
 #include "program/embedded.h"
 #include "program/exit_code.h"
 #include "program/interrupt.h"
@@ -25,6 +27,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kRunFooter =
     "Writes DIR/<variant>/{forces.csv, frames.pvd, frames/, view.jsonl, summary.json} and DIR/report.html.\n"
+    "A scene of heat writes temperature.csv and heat.csv in place of forces.csv and view.jsonl.\n"
     "ParaView opens frames.pvd, `glisson view DIR` all of it.\n"
     "A former run in DIR is replaced; a folder that holds anything else is refused.\n"
     "\n"
@@ -46,6 +49,7 @@ std::vector<Job> jobs_of(const Scene& scene, const fs::path& folder, int threads
   for (const Variant& variant : scene.variants) {
     RecorderOptions recorder{.folder = folder / variant.name, .scene = scene.file.stem().string(), .threads = threads};
     recorder.surface_bytes /= scene.variants.size();
+    recorder.checks = checks_of(scene, variant.name);
     jobs.push_back({.name = variant.name, .variant = variant, .recorder = std::move(recorder), .also = nullptr});
   }
   return jobs;
@@ -64,9 +68,18 @@ int run(const RunOptions& options) {
   const fs::path folder = options.out.empty() ? fs::path("out") / scene.file.stem() : fs::path(options.out);
   if (!options.quiet && !options.scene.mesh.empty()) say("{}\n", scene.notes.back());
   for (const Variant& v : scene.variants) {
-    if (const std::string note = branches_note(v); !options.quiet && !note.empty()) say("{}: {}\n", v.name, note);
+    if (const std::string note = v.heat ? "" : branches_note(v); !options.quiet && !note.empty())
+      say("{}: {}\n", v.name, note);
   }
   MeshCache meshes(options.quiet);
+  if (is_heat_scene(scene)) {
+    for (const Variant& variant : scene.variants) BuiltHeat(variant, meshes.loader());  // a mistake is told first
+    OutputFolder output(folder, tell_warning);
+    output.prepare();
+    write_whole(folder / "scene.toml", scene.source);
+    catch_interrupts();
+    return run_heat_scene(scene, folder, options.threads, options.quiet, meshes.loader());
+  }
   const std::vector<Job> jobs = jobs_of(scene, folder, options.threads);
   require_runnable(jobs, meshes.loader());
   OutputFolder output(folder, tell_warning);

@@ -37,6 +37,10 @@ COLOURS = {
     "s": _Field("s", True, "equivalent shear strain s", _PLAIN),
     "q": _Field("q", True, "shape measure q", _PLAIN),
     "jacobian": _Field("jacobian", True, "volume ratio det F", _PLAIN),
+    "temperature": _Field("temperature_C", False, "temperature", (("°C", 1.0, np.inf),)),
+    "coldest": _Field("coldest_C", False, "coldest temperature so far", (("°C", 1.0, np.inf),)),
+    "frozen": _Field("frozen", False, "share that is frozen", _PLAIN),
+    "dead": _Field("dead", False, "tissue that has died", _PLAIN),
 }
 _TISSUE = ("tissue", "none")
 # The scale of reports and live view: equal steps look equal, and lightness rises all the way (web/src/mesh3d/colour_table.ts).
@@ -72,7 +76,8 @@ def picture(
     :param out: the folder that `glisson run` wrote
     :param frame: its number, from 0; −1 is the last
     :param variant: its name; none: the first
-    :param colour: displacement, von_mises, pressure, contact_pressure, s, q, jacobian, or tissue
+    :param colour: displacement, von_mises, pressure, contact_pressure, s, q, jacobian, or tissue; of a run of heat
+        temperature, which is its default, coldest, frozen or dead
     :param cut: opens the body: "x=0", "y=20mm", "z = 0.03" [m]; the field is shown on the face
     :param flip: takes the other side away
     :param size: of the picture [pixels]
@@ -122,6 +127,8 @@ def _field(colour: str, body: Frame, variant: str) -> _Field | None:
         return None
     if colour not in COLOURS:
         raise RunError(f"colour is {colour!r}; there are: {', '.join((*COLOURS, 'tissue'))}")
+    if colour == "displacement" and "temperature_C" in body.points:
+        colour = "temperature"  # of a run of heat, which does not move
     field = COLOURS[colour]
     if field.array not in (body.cells if field.of_cells else body.points):
         why = "it is written where an instrument or a container touches the body" if colour == "contact_pressure" else ""
@@ -160,7 +167,7 @@ class _Drawn:
 
 
 def _scene(body: Frame, field: _Field | None, plane: tuple[Any, float] | None, exaggerate: float, tools: bool) -> _Drawn:
-    places = body.rest + exaggerate * body.points["displacement_m"]
+    places = body.rest + exaggerate * body.points.get("displacement_m", np.zeros_like(body.rest))
     values = _at_vertices(body, field)
     regions = body.cells.get("region", np.zeros(len(body.tets))).astype(int)
     triangles, owner = _surface(body.tets)

@@ -21,4 +21,5 @@ NB_MODULE(_core, m) {
   py::bind_cutting(m);
   py::bind_scenes(m);
   py::bind_results(m);
+  py::bind_heat(m);
 }

@@ -12,6 +12,7 @@ std::string key_of_unit(std::string_view unit) {
   if (unit == "°") return "deg";
   std::string key;
   for (std::size_t i = 0; i < unit.size(); ++i) {
+    if (unit[i] == '(' || unit[i] == ')') continue;  // "W/(m K)": W_m_K
     const std::string_view two = unit.substr(i, 2);
     const char in_key = two == "²"                                       ? '2'
                         : two == "³"                                     ? '3'

@@ -24,16 +24,19 @@ std::pair<std::array<Vec3d, 4>, double> gradients(const TetMesh& mesh, const Tet
 }  // namespace
 
 HeatBody::HeatBody(const TetMesh& mesh, const std::map<int, ThermalTissue>& tissues) {
+  std::map<int, std::uint32_t> numbers;
   for (const auto& [region, tissue] : tissues) {
-    numbers_[region] = static_cast<std::uint32_t>(curves_.size());
-    curves_.emplace_back(tissue);
+    numbers[region] = static_cast<std::uint32_t>(curves_.size());
+    curves_.emplace_back(tissue), regions_.push_back(region);
   }
   std::vector<std::uint32_t> tissue_of(mesh.tets.size());
   for (std::size_t k = 0; k < mesh.tets.size(); ++k) {
-    const auto number = numbers_.find(mesh.region_of(k));
-    if (number == numbers_.end()) {
+    const auto number = numbers.find(mesh.region_of(k));
+    if (number == numbers.end()) {
+      const auto name = mesh.region_names.find(mesh.region_of(k));
       throw std::invalid_argument("heat: region " + std::to_string(mesh.region_of(k)) +
-                                  " of the mesh has no thermal tissue");
+                                  (name == mesh.region_names.end() ? "" : " (" + name->second + ")") +
+                                  " of the mesh has no thermal tissue; give it one");
     }
     tissue_of[k] = number->second;
   }

@@ -55,7 +55,7 @@ class HeatBody {
   const Links& links() const { return links_; }
   std::span<const NegativeLink> negative_links() const { return negative_; }
   const ThermalCurve& curve(std::uint32_t number) const { return curves_[number]; }
-  std::uint32_t number_of(int region) const { return numbers_.at(region); }
+  int region_of(std::uint32_t tissue) const { return regions_[tissue]; }
   std::size_t tissues() const { return curves_.size(); }
   double volume(std::size_t vertex) const { return volume_[vertex]; }
 
@@ -69,7 +69,7 @@ class HeatBody {
   std::uint32_t part_of(std::uint32_t vertex, std::uint32_t tissue) const;
 
   std::vector<ThermalCurve> curves_;
-  std::map<int, std::uint32_t> numbers_;
+  std::vector<int> regions_;
   std::vector<std::size_t> begin_;
   std::vector<Part> parts_;
   std::vector<std::uint32_t> vertex_of_;

@@ -26,10 +26,10 @@ FlowFinder::FlowFinder(const HeatBody& body, Blocks& blocks)
 }
 
 void FlowFinder::set_temperature(std::span<const double> temperature, std::span<const SurfaceHeat> surfaces,
-                                 Flows& flows) {
+                                 std::span<const std::uint8_t> dead, Flows& flows) {
   const std::size_t n = body_->size();
   for (auto* of : {&flows.conduction, &flows.blood, &flows.metabolism, &flows.loss}) of->resize(n);
-  flows.surface.assign(n, 0.0);
+  flows.surface.assign(n, 0.0), flows.lines.assign(n, 0.0);
   blocks_->run([&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       VertexState sum;
@@ -52,17 +52,19 @@ void FlowFinder::set_temperature(std::span<const double> temperature, std::span<
         for (std::size_t k = 0; k < parts.size(); ++k) ratio_[first + k] /= sum.conductivity;
       }
       states_[i] = sum;
+      if (dead[i] != 0) blood = metabolism = loss = 0.0;
       flows.blood[i] = blood, flows.metabolism[i] = metabolism, flows.loss[i] = loss;
     }
   });
   for (const SurfaceHeat& x : surfaces) {
     for (std::size_t k = 0; k < x.vertices.size(); ++k) {
       const std::uint32_t v = x.vertices[k];
-      if (x.coefficient == 0.0) {
+      if (x.what == SurfaceHeat::What::flux) {
         flows.surface[v] += x.area[k] * x.value;
       } else {
-        flows.surface[v] += x.area[k] * x.coefficient * (x.value - temperature[v]);
-        flows.loss[v] += x.area[k] * x.coefficient;
+        const double per_kelvin = x.area[k] * x.coefficient;
+        (x.what == SurfaceHeat::What::line ? flows.lines : flows.surface)[v] += per_kelvin * (x.value - temperature[v]);
+        flows.loss[v] += per_kelvin;
       }
     }
   }

@@ -13,30 +13,32 @@
 
 namespace glisson::heat {
 
-/// Heat through a part of the surface, by vertex: flux · area + coefficient · area (ambient − T).
+/// Heat through a part of the surface, by vertex: flux · area, or coefficient · area (ambient − T). Of a line its length stands for the
+/// area.
 struct SurfaceHeat {
+  enum class What { flux, convection, line } what = What::flux;
   std::vector<std::uint32_t> vertices;
-  std::vector<double> area;  ///< of each [m²]
-  double coefficient = 0.0;  ///< [W/(m² K)]
-  double value =
-      0.0;  ///< at the time in question: flux [W/m²], or ambient temperature [°C] where there is a coefficient
+  std::vector<double> area;  ///< of each [m²]; of a line [m]
+  double coefficient = 0.0;  ///< at the time in question [W/(m² K)]; of a line [W/(m K)]
+  double value = 0.0;        ///< at that time: flux [W/m²], or what is beyond the surface [°C]
 };
 
 /// Of each vertex [W].
 struct Flows {
-  std::vector<double> conduction, blood, metabolism, surface;
-  std::vector<double> loss;  ///< −d(blood + metabolism + surface)/dT [W/K]; below 0 where blood comes with thaw
+  std::vector<double> conduction, blood, metabolism, surface, lines;
+  std::vector<double> loss;  ///< −d(blood + metabolism + surface + lines)/dT [W/K]; below 0 where blood comes with thaw
   double limited = 0.0;      ///< conduction that the limiter took away over all of it [-]
 
-  double sum(std::size_t i) const { return conduction[i] + blood[i] + metabolism[i] + surface[i]; }
+  double sum(std::size_t i) const { return conduction[i] + blood[i] + metabolism[i] + surface[i] + lines[i]; }
 };
 
 class FlowFinder {
  public:
   FlowFinder(const HeatBody& body, Blocks& blocks);
 
-  /// States of the vertices at these temperatures, and their flows but for conduction.
-  void set_temperature(std::span<const double> temperature, std::span<const SurfaceHeat> surfaces, Flows& flows);
+  /// States of the vertices at these temperatures, and their flows but for conduction. @param dead  1: without blood and metabolism
+  void set_temperature(std::span<const double> temperature, std::span<const SurfaceHeat> surfaces,
+                       std::span<const std::uint8_t> dead, Flows& flows);
   const std::vector<VertexState>& states() const { return states_; }
   /// ∫ k dT of each part [W/m].
   std::span<const double> conducted() const { return conducted_; }

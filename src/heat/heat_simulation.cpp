@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <numbers>
 #include <stdexcept>
 
 #include "base/require_fields.h"
 #include "base/text.h"
-#include "heat/heat_step.h"
+#include "heat/heat_simulation_impl.h"
 #include "mesh/inspect/tet_locator.h"
 #include "mesh/topology/require_valid.h"
 
@@ -25,6 +25,7 @@ constexpr double kAccepted = 1.5;                // of the tolerance
 constexpr int kMostHalvings = 12, kMostTries = 60;
 constexpr double kTouched = 1.0;   // a change that counts in full for the volume that errors are a mean over [K]
 constexpr int kSamplesPerTet = 4;  // of a line source, in the length of a tet
+constexpr int kLeastAround = 8;    // of its samples around it
 
 const std::map<int, ThermalTissue>& checked(const std::map<int, ThermalTissue>& tissues) {
   for (const auto& [region, tissue] : tissues)
@@ -48,82 +49,34 @@ HeatOptions checked(const HeatOptions& options) {
   return options;
 }
 
+const char* name_of(SurfaceHeat::What what) {
+  switch (what) {
+    case SurfaceHeat::What::flux:
+      return "flux";
+    case SurfaceHeat::What::convection:
+      return "ambient temperature";
+    case SurfaceHeat::What::line:
+      break;
+  }
+  return "temperature of a line source";
+}
+
 double value_of(const TimeFunction<double>& f, double time, const char* what) {
   const double value = f(time);
   if (std::isfinite(value)) return value;
   throw std::invalid_argument(std::string("heat: the ") + what + " at " + detail::show(time) + " s is not finite");
 }
 
-/// Share of a tet's volume below a level of a linear field with these values at its corners.
-double share_below(std::array<double, 4> t, double level) {
-  std::sort(t.begin(), t.end());
-  const auto [a, b, c, d] = t;
-  if (level <= a) return 0.0;
-  if (level >= d) return 1.0;
-  const auto along = [level](double from, double to) { return (level - from) / (to - from); };
-  if (level <= b) return along(a, b) * along(a, c) * along(a, d);
-  if (level >= c) return 1.0 - along(d, a) * along(d, b) * along(d, c);
-  // a wedge of three tets, whose corners cut the edges ac, ad, bc and bd
-  const double ac = along(a, c), ad = along(a, d), bc = along(b, c), bd = along(b, d);
-  return ac * ad + bd * ac * (1.0 - ad) + (1.0 - ac) * bd * bc;
-}
-
 }  // namespace
 
-class HeatSimulation::Impl {
- public:
-  Impl(TetMesh given, const std::map<int, ThermalTissue>& tissues, const HeatOptions& options)
-      : mesh_(checked(std::move(given))), options_(checked(options)), body_(mesh_, checked(tissues)),
-        stepper_(body_, options_.threads > 0 ? options_.threads : detail::threads_for(body_.size())),
-        held_(mesh_.vertices.size(), 0) {
-    now_.temperature.assign(held_.size(), options.temperature);
-    for (std::size_t i = 0; i < held_.size(); ++i) now_.heat.push_back(body_.state(i, options.temperature).heat);
-  }
-
-  struct Held {
-    std::vector<std::uint32_t> vertices;
-    TimeFunction<double> temperature;
-  };
-  struct TimedSurface {
-    SurfaceHeat heat;
-    TimeFunction<double> value;
-  };
-  /// Power by vertex where a function of time is 1.
-  struct Source {
-    std::vector<std::pair<std::uint32_t, double>> shares;
-    TimeFunction<double> power;
-  };
-
-  TetMesh mesh_;
-  HeatOptions options_;
-  HeatBody body_;
-  HeatStepper stepper_;
-  std::vector<Held> holds_;
-  std::vector<TimedSurface> surfaces_;
-  std::vector<Source> sources_;
-
-  HeatState now_;
-  std::vector<char> held_;
-
-  void hold(std::span<const std::uint32_t> vertices, TimeFunction<double> temperature);
-  SurfaceHeat surface_of(const std::string& set) const;
-  void add_line(const LineSource& source);
-  HeatStep step_up_to(double most);
-
- private:
-  struct Trial {
-    std::vector<double> temperature;
-    Flows flows;
-    std::vector<double> sources;
-    int iterations = 0;
-    double error = 0.0;  // [K]
-  };
-  std::optional<Trial> make(double h);
-  /// A step of this length, in halves where it does not converge at once.
-  bool make_given(double h, int halvings, int& iterations);
-  void accept(double h, Trial& trial);
-  double next_corner() const;
-};
+HeatSimulation::Impl::Impl(TetMesh given, const std::map<int, ThermalTissue>& tissues, const HeatOptions& options)
+    : mesh_(checked(std::move(given))), options_(checked(options)), body_(mesh_, checked(tissues)),
+      stepper_(body_, options_.threads > 0 ? options_.threads : detail::threads_for(body_.size())),
+      history_(body_, options_.isotherms), held_(mesh_.vertices.size(), 0) {
+  now_.temperature.assign(held_.size(), options.temperature);
+  now_.history = history_.begin(now_.temperature);
+  for (std::size_t i = 0; i < held_.size(); ++i) now_.heat.push_back(body_.state(i, options.temperature).heat);
+}
 
 void HeatSimulation::Impl::hold(std::span<const std::uint32_t> vertices, TimeFunction<double> temperature) {
   for (const std::uint32_t v : vertices) {
@@ -152,29 +105,74 @@ SurfaceHeat HeatSimulation::Impl::surface_of(const std::string& set) const {
 }
 
 void HeatSimulation::Impl::add_line(const LineSource& source) {
+  if (!source.power_per_length && !source.temperature) {
+    throw std::invalid_argument(
+        "heat: a line source gives no heat; give power_per_length, or temperature and coefficient");
+  }
+  if (static_cast<bool>(source.temperature) != static_cast<bool>(source.coefficient)) {
+    throw std::invalid_argument(
+        std::string("heat: a line source has a ") +
+        (source.temperature ? "temperature and no coefficient" : "coefficient and no temperature") +
+        "; c (T_s − T) needs both");
+  }
+  const std::map<std::uint32_t, double> share = shares_of_line(source);
+  if (source.power_per_length) sources_.push_back({{share.begin(), share.end()}, source.power_per_length});
+  if (!source.temperature) return;
+  SurfaceHeat line{.what = SurfaceHeat::What::line, .vertices = {}, .area = {}};
+  for (const auto& [v, length] : share) line.vertices.push_back(v), line.area.push_back(length);
+  surfaces_.push_back({std::move(line), source.temperature, source.coefficient});
+}
+
+namespace {
+
+/// Points around a line, as offsets from it; the line itself where it has no radius.
+std::vector<Vec3d> around(const Vec3d& along, double radius, double spacing) {
+  if (radius == 0.0) return {Vec3d{}};
+  const Vec3d n = unit(along), other = std::abs(n.z) < 0.9 ? Vec3d{0, 0, 1} : Vec3d{1, 0, 0}, u = unit(cross(other, n)),
+              v = cross(n, u);
+  const double whole = 2.0 * std::numbers::pi;
+  const int count = std::max(kLeastAround, static_cast<int>(std::ceil(whole * radius / spacing)));
+  std::vector<Vec3d> offsets;
+  for (int k = 0; k < count; ++k)
+    offsets.push_back(u * (radius * std::cos(whole * k / count)) + v * (radius * std::sin(whole * k / count)));
+  return offsets;
+}
+
+}  // namespace
+
+/// Of each vertex the length of a line that it stands for [m].
+std::map<std::uint32_t, double> HeatSimulation::Impl::shares_of_line(const LineSource& source) const {
   const detail::TetLocator locator(mesh_, {});
   const Vec3d way = source.to - source.from;
   const double length = norm(way);
   if (!(length > 0.0)) throw std::invalid_argument("heat: a line source has no length");
+  if (!(source.radius >= 0.0) || !std::isfinite(source.radius))
+    throw std::invalid_argument("heat: a line source has a radius of " + detail::show(source.radius) +
+                                " m; allowed: ≥ 0");
   const double tet = std::cbrt(6.0 * volume(mesh_) / static_cast<double>(mesh_.tets.size()));
   const int n = std::max(1, static_cast<int>(std::ceil(kSamplesPerTet * length / tet)));
+  const std::vector<Vec3d> offsets = around(way, source.radius, tet / kSamplesPerTet);
   std::map<std::uint32_t, double> share;
   for (int k = 0; k < n; ++k) {
-    const Vec3d x = source.from + way * ((k + 0.5) / n);
-    const auto at = locator.locate(x);
-    if (!at) {
-      throw std::invalid_argument("heat: a line source leaves the body at (" + detail::number_text(1e3 * x.x) + ", " +
-                                  detail::number_text(1e3 * x.y) + ", " + detail::number_text(1e3 * x.z) + ") mm");
+    for (const Vec3d& offset : offsets) {
+      const Vec3d x = source.from + way * ((k + 0.5) / n) + offset;
+      const auto at = locator.locate(x);
+      if (!at) {
+        throw std::invalid_argument("heat: a line source leaves the body at (" + detail::number_text(1e3 * x.x) + ", " +
+                                    detail::number_text(1e3 * x.y) + ", " + detail::number_text(1e3 * x.z) + ") mm");
+      }
+      const double part = length / n / static_cast<double>(offsets.size());
+      for (std::size_t c = 0; c < 4; ++c) share[mesh_.tets[at->tet][c]] += at->weights[c] * part;
     }
-    for (std::size_t c = 0; c < 4; ++c) share[mesh_.tets[at->tet][c]] += at->weights[c] * length / n;
   }
-  sources_.push_back({{share.begin(), share.end()}, source.power_per_length});
+  return share;
 }
 
 double HeatSimulation::Impl::next_corner() const {
   double next = std::numeric_limits<double>::infinity();
   for (const Held& x : holds_) next = std::min(next, x.temperature.corners.after(now_.time));
-  for (const TimedSurface& x : surfaces_) next = std::min(next, x.value.corners.after(now_.time));
+  for (const TimedSurface& x : surfaces_)
+    next = std::min({next, x.value.corners.after(now_.time), x.coefficient.corners.after(now_.time)});
   for (const Source& x : sources_) next = std::min(next, x.power.corners.after(now_.time));
   return next;
 }
@@ -189,7 +187,14 @@ std::optional<HeatSimulation::Impl::Trial> HeatSimulation::Impl::make(double h) 
   }
   std::vector<SurfaceHeat> surfaces;
   for (TimedSurface& x : surfaces_) {
-    x.heat.value = value_of(x.value, end, x.heat.coefficient > 0.0 ? "ambient temperature" : "flux");
+    x.heat.value = value_of(x.value, end, name_of(x.heat.what));
+    if (x.coefficient) {
+      x.heat.coefficient = value_of(x.coefficient, end, "coefficient of a line source");
+      if (x.heat.coefficient < 0.0) {
+        throw std::invalid_argument("heat: the coefficient of a line source at " + detail::show(end) + " s is " +
+                                    detail::show(x.heat.coefficient) + " W/(m K); allowed: ≥ 0");
+      }
+    }
     surfaces.push_back(x.heat);
   }
   trial.sources.assign(now_.temperature.size(), 0.0);
@@ -197,7 +202,7 @@ std::optional<HeatSimulation::Impl::Trial> HeatSimulation::Impl::make(double h) 
     const double power = value_of(x.power, end, "power of a source");
     for (const auto& [v, share] : x.shares) trial.sources[v] += share * power;
   }
-  const HeatStepper::Input in{h, now_.heat, trial.sources, held_, surfaces};
+  const HeatStepper::Input in{h, now_.heat, trial.sources, held_, now_.history.dead, surfaces};
   const std::vector<double> here = trial.temperature;
   if (!now_.rate.empty()) {
     for (std::size_t i = 0; i < here.size(); ++i) {
@@ -225,6 +230,7 @@ std::optional<HeatSimulation::Impl::Trial> HeatSimulation::Impl::make(double h) 
 // What has flowed into a vertex is its heat, and gives its temperature.
 void HeatSimulation::Impl::accept(double h, Trial& trial) {
   now_.rate.resize(now_.temperature.size());
+  const std::vector<double> earlier = now_.temperature;
   for (std::size_t i = 0; i < now_.temperature.size(); ++i) {
     const double before = now_.heat[i], in = h * (trial.flows.sum(i) + trial.sources[i]);
     double now = trial.temperature[i];
@@ -240,9 +246,11 @@ void HeatSimulation::Impl::accept(double h, Trial& trial) {
     }
     now_.ledger.stored += now_.heat[i] - before;
     now_.ledger.blood += h * trial.flows.blood[i], now_.ledger.metabolism += h * trial.flows.metabolism[i];
-    now_.ledger.surface += h * trial.flows.surface[i], now_.ledger.sources += h * trial.sources[i];
+    now_.ledger.surface += h * trial.flows.surface[i],
+        now_.ledger.sources += h * (trial.sources[i] + trial.flows.lines[i]);
     now_.rate[i] = (now - now_.temperature[i]) / h, now_.temperature[i] = now;
   }
+  history_.add(h, earlier, now_.temperature, stepper_.blocks(), now_.history);
   now_.limited_share = trial.flows.limited;
   now_.time += h, now_.step_before = h, ++now_.steps;
 }
@@ -308,7 +316,7 @@ void HeatSimulation::add_convection(const std::string& set, double coefficient, 
                                 " W/(m² K) is out of range; allowed: > 0");
   }
   SurfaceHeat surface = impl_->surface_of(set);
-  surface.coefficient = coefficient;
+  surface.what = SurfaceHeat::What::convection, surface.coefficient = coefficient;
   impl_->surfaces_.push_back({std::move(surface), std::move(ambient)});
 }
 void HeatSimulation::add_source(int region, TimeFunction<double> power_per_volume) {
@@ -324,14 +332,21 @@ void HeatSimulation::add_line_source(const LineSource& source) { impl_->add_line
 
 HeatStep HeatSimulation::step() { return impl_->step_up_to(std::numeric_limits<double>::infinity()); }
 
+HeatStep HeatSimulation::step_towards(double time) {
+  const double now = impl_->now_.time;
+  if (!std::isfinite(time) || time <= now) {
+    throw std::invalid_argument("heat: step_towards: " + detail::show(time) + " s does not lie ahead of " +
+                                detail::show(now) + " s");
+  }
+  const HeatStep step = impl_->step_up_to(time - now);
+  if (step.status == HeatStatus::ok && time - impl_->now_.time < 1e-12 * time) impl_->now_.time = time;
+  return step;
+}
+
 HeatStep HeatSimulation::advance_to(double time) {
   if (!std::isfinite(time)) throw std::invalid_argument("heat: advance_to: " + detail::show(time) + " s is not a time");
   HeatStep last;
-  while (impl_->now_.time < time) {
-    last = impl_->step_up_to(time - impl_->now_.time);
-    if (last.status != HeatStatus::ok) return last;
-    if (time - impl_->now_.time < 1e-12 * time) impl_->now_.time = time;
-  }
+  while (impl_->now_.time < time && last.status == HeatStatus::ok) last = step_towards(time);
   return last;
 }
 
@@ -340,36 +355,8 @@ const TetMesh& HeatSimulation::mesh() const { return impl_->mesh_; }
 std::span<const double> HeatSimulation::temperature() const { return impl_->now_.temperature; }
 HeatLedger HeatSimulation::ledger() const { return impl_->now_.ledger; }
 const HeatState& HeatSimulation::state() const { return impl_->now_; }
-void HeatSimulation::load_state(HeatState state) {
-  const std::size_t n = impl_->held_.size();
-  if (state.temperature.size() != n || state.heat.size() != n || (!state.rate.empty() && state.rate.size() != n)) {
-    throw std::invalid_argument("heat: load_state: the state is of " + std::to_string(state.temperature.size()) +
-                                " vertices, this mesh has " + std::to_string(n));
-  }
-  impl_->now_ = std::move(state);
-}
 std::size_t HeatSimulation::steps() const { return impl_->now_.steps; }
 const HeatWork& HeatSimulation::work() const { return impl_->stepper_.work(); }
 void HeatSimulation::count_time() { impl_->stepper_.count_time(); }
-
-double HeatSimulation::frozen_volume() const {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < impl_->now_.temperature.size(); ++i) {
-    for (const heat::Part& p : impl_->body_.parts(i)) {
-      sum += p.volume * (1.0 - impl_->body_.curve(p.tissue).at(impl_->now_.temperature[i]).liquid);
-    }
-  }
-  return sum;
-}
-
-double HeatSimulation::volume_below(double temperature) const {
-  double sum = 0.0;
-  for (std::size_t t = 0; t < impl_->mesh_.tets.size(); ++t) {
-    std::array<double, 4> corners;
-    for (std::size_t c = 0; c < 4; ++c) corners[c] = impl_->now_.temperature[impl_->mesh_.tets[t][c]];
-    sum += six_rest_volume(impl_->mesh_, t) / 6.0 * share_below(corners, temperature);
-  }
-  return sum;
-}
 
 }  // namespace glisson

@@ -110,7 +110,7 @@ int HeatStepper::step(const Input& in, std::vector<double>& temperature, Flows& 
     ++work_.iterations;
     {
       const Timed t(timed, work_.state_seconds);
-      finder_.set_temperature(temperature, in.surfaces, flows);
+      finder_.set_temperature(temperature, in.surfaces, in.dead, flows);
     }
     const bool follows = k <= kFreeIterations;  // leaves what these temperatures allow: nothing to tighten
     if (follows && finder_.has_negative()) {

@@ -21,10 +21,11 @@ class HeatStepper {
   HeatStepper(const HeatBody& body, int threads);
 
   struct Input {
-    double h = 0.0;                   ///< [s]
-    std::span<const double> heat;     ///< of the vertices before [J]
-    std::span<const double> sources;  ///< [W], by vertex
-    std::span<const char> held;       ///< 1: its temperature is given
+    double h = 0.0;                      ///< [s]
+    std::span<const double> heat;        ///< of the vertices before [J]
+    std::span<const double> sources;     ///< [W], by vertex
+    std::span<const char> held;          ///< 1: its temperature is given
+    std::span<const std::uint8_t> dead;  ///< 1: without blood and metabolism
     std::span<const SurfaceHeat> surfaces;
   };
   /// @param temperature  where the search begins, of held vertices what they are held at [°C]; the result

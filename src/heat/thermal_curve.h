@@ -1,6 +1,8 @@
 // thermal_curve.h — a tissue's curves over temperature, with what does not depend on temperature found once.
 #pragma once
 
+#include <optional>
+
 #include "glisson/heat/thermal_tissue.h"
 
 namespace glisson::heat {
@@ -13,7 +15,7 @@ class ThermalCurve {
         range_(begins - ends), per_range_(1.0 / range_),
         between_(t.density * (0.5 * (t.specific_heat + t.frozen_specific_heat) + t.latent_heat / range_)),
         blood_heat(t.perfusion * t.blood_heat_capacity), blood_temperature(t.blood_temperature),
-        metabolic_heat(t.metabolic_heat) {}
+        metabolic_heat(t.metabolic_heat), death(t.death) {}
 
   ThermalState at(double temperature) const {
     ThermalState s;
@@ -48,6 +50,7 @@ class ThermalCurve {
 
  public:
   double blood_heat, blood_temperature, metabolic_heat;  ///< w ρ_b c_b [W/(m³ K)], [°C], [W/m³]
+  std::optional<TissueDeath> death;
 };
 
 }  // namespace glisson::heat

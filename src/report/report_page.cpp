@@ -79,9 +79,23 @@ std::string machine_text() {
   return fmt::format("{} × {}", std::max(1u, std::thread::hardware_concurrency()), processor_name());
 }
 
-nlohmann::json scene_json(const Scene& scene, const std::vector<const VariantRecorder*>& variants,
+nlohmann::json scene_json(const Scene& scene, nlohmann::json variants, nlohmann::json charts,
                           const SceneExtras& extras) {
   const std::string name = scene.file.stem().string();
+  return {{"name", name},
+          {"title", scene.title.empty() ? name : scene.title},
+          {"description", scene.description},
+          {"notes", scene.notes},
+          {"advice", nlohmann::json::array()},
+          {"source", scene.source},
+          {"variants", std::move(variants)},
+          {"charts", std::move(charts)},
+          {"tables", extras.tables},
+          {"checks", extras.checks}};
+}
+
+nlohmann::json scene_json(const Scene& scene, const std::vector<const VariantRecorder*>& variants,
+                          const SceneExtras& extras) {
   const double reach = common_law_reach(variants);
   nlohmann::json list = nlohmann::json::array();
   for (const VariantRecorder* v : variants) list.push_back(v->json(reach));
@@ -91,16 +105,9 @@ nlohmann::json scene_json(const Scene& scene, const std::vector<const VariantRec
     if (!chart.value.column.empty()) charts.back()["map"] = map_json(chart, variants);
   }
   for (const nlohmann::json& chart : extras.charts) charts.push_back(chart);
-  return {{"name", name},
-          {"title", scene.title.empty() ? name : scene.title},
-          {"description", scene.description},
-          {"notes", scene.notes},
-          {"advice", scene_advice(scene, variants)},
-          {"source", scene.source},
-          {"variants", std::move(list)},
-          {"charts", std::move(charts)},
-          {"tables", extras.tables},
-          {"checks", extras.checks}};
+  nlohmann::json page = scene_json(scene, std::move(list), std::move(charts), extras);
+  page["advice"] = scene_advice(scene, variants);
+  return page;
 }
 
 nlohmann::json report_json(const std::string& title, const std::string& subtitle, nlohmann::json scenes) {

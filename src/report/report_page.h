@@ -33,6 +33,10 @@ struct SceneExtras {
 nlohmann::json scene_json(const Scene& scene, const std::vector<const VariantRecorder*>& variants,
                           const SceneExtras& extras = {});
 
+/// The same of variants and charts that are JSON already, whatever kind of runs they are of.
+nlohmann::json scene_json(const Scene& scene, nlohmann::json variants, nlohmann::json charts,
+                          const SceneExtras& extras);
+
 /// ReportData with the version, the time and the machine filled in.
 nlohmann::json report_json(const std::string& title, const std::string& subtitle, nlohmann::json scenes);
 

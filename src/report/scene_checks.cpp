@@ -1,12 +1,9 @@
 // scene_checks.cpp — see scene_checks.h.
 #include "report/scene_checks.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <stdexcept>
 #include <utility>
 
 namespace glisson {
@@ -18,43 +15,6 @@ bool is_meant(const std::vector<std::string>& names, const VariantRecorder& run)
   return names.empty() || std::find(names.begin(), names.end(), run.variant().name) != names.end();
 }
 
-double value_at(CheckSpec::At at, const std::vector<double>& values) {
-  switch (at) {
-    case CheckSpec::At::end:
-      return values.back();
-    case CheckSpec::At::largest:
-      return *std::max_element(values.begin(), values.end());
-    case CheckSpec::At::least:
-      return *std::min_element(values.begin(), values.end());
-    case CheckSpec::At::peak:
-      break;
-  }
-  const auto smaller = [](double a, double b) { return std::abs(a) < std::abs(b); };
-  return std::abs(*std::max_element(values.begin(), values.end(), smaller));
-}
-
-std::string bounds_text(const CheckSpec& check) {
-  if (check.at_least && check.at_most) return fmt::format("{:.4g} to {:.4g}", *check.at_least, *check.at_most);
-  return check.at_least ? fmt::format("at least {:.4g}", *check.at_least)
-                        : fmt::format("at most {:.4g}", *check.at_most);
-}
-
-nlohmann::json checked(const CheckSpec& check, const VariantRecorder& run, bool one) {
-  const std::string what = one ? check.what : run.variant().label + ": " + check.what;
-  const std::string expected = bounds_text(check);
-  if (run.summary().end != RunSummary::End::finished)
-    return check_json(what, "the run did not finish", expected, false);
-  try {
-    const std::vector<double>& values = run.column(check.column);
-    if (values.empty()) return check_json(what, check.column + " has no values", expected, false);
-    const double value = value_at(check.at, values);
-    const bool pass = (!check.at_least || value >= *check.at_least) && (!check.at_most || value <= *check.at_most);
-    return check_json(what, fmt::format("{:.4g} ({}, {})", value, check.column, word_of(check.at)), expected, pass);
-  } catch (const std::out_of_range& error) {
-    return check_json(what, error.what(), expected, false);
-  }
-}
-
 }  // namespace
 
 nlohmann::json check_json(const std::string& what, const std::string& measured, const std::string& expected,
@@ -62,11 +22,19 @@ nlohmann::json check_json(const std::string& what, const std::string& measured, 
   return {{"what", what}, {"measured", measured}, {"expected", expected}, {"pass", pass}};
 }
 
+nlohmann::json check_json(const CheckResult& result, const std::string& of) {
+  return check_json(of.empty() ? result.name : of + ": " + result.name, result.measured_text, result.expected_text,
+                    result.ok);
+}
+
 nlohmann::json scene_checks(const Scene& scene, const std::vector<const VariantRecorder*>& variants) {
   nlohmann::json list = nlohmann::json::array();
   for (const CheckSpec& check : scene.checks) {
     for (const VariantRecorder* run : variants) {
-      if (is_meant(check.variants, *run)) list.push_back(checked(check, *run, scene.variants.size() == 1));
+      if (!is_meant(check.variants, *run)) continue;
+      const auto column = [run](const std::string& name) -> const std::vector<double>& { return run->column(name); };
+      list.push_back(check_json(check_result(check, run->summary().end == RunSummary::End::finished, column),
+                                scene.variants.size() == 1 ? "" : run->variant().label));
     }
   }
   return list;

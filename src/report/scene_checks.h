@@ -6,12 +6,16 @@
 #include <vector>
 
 #include "glisson/scene/scene.h"
+#include "report/check_result.h"
 #include "report/variant_recorder.h"
 
 namespace glisson {
 
 /// CheckData of web/src/report_data.ts.
 nlohmann::json check_json(const std::string& what, const std::string& measured, const std::string& expected, bool pass);
+
+/// @param of  label of the variant; may be empty
+nlohmann::json check_json(const CheckResult& result, const std::string& of);
 
 /// One CheckData for each check and variant that it names; a run that has not finished does not pass, nor a column that is not there.
 nlohmann::json scene_checks(const Scene& scene, const std::vector<const VariantRecorder*>& variants);

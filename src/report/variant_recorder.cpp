@@ -2,72 +2,15 @@
 #include "report/variant_recorder.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <stdexcept>
 
+#include "report/csv_table.h"
 #include "report/json_text.h"
 #include "report/law_data.h"
 #include "report/summary_json.h"
 
 namespace glisson {
-namespace {
-
-constexpr std::size_t kPageRows = 2000;  // of forces in the page; forces.csv has them all
-constexpr std::size_t kFirstRows = 100;  // of them kept one by one: the start is where overheads appear
-constexpr int kPageDigits = 7;
-
-template <class Values, class Text>
-std::string joined(const Values& values, Text text) {
-  std::string line;
-  for (const auto& value : values) {
-    if (!line.empty()) line += ',';
-    line += text(value);
-  }
-  return line;
-}
-
-std::string csv_head(const std::vector<std::string>& columns) {
-  return joined(columns, [](const std::string& name) { return name; });
-}
-
-/// A number of 7 digits: what a plot needs, at half the length.
-double short_number(double value) {
-  if (!std::isfinite(value)) return value;
-  std::array<char, 32> text;
-  const auto end =
-      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, kPageDigits).ptr;
-  double rounded = 0.0;
-  std::from_chars(text.data(), end, rounded);
-  return rounded;
-}
-
-/// Rows the page shows of `rows`: all of a short table, else the first hundred and then evenly spaced ones to the last.
-std::vector<std::size_t> page_rows(std::size_t rows) {
-  std::vector<std::size_t> kept;
-  const std::size_t first = std::min(rows, rows <= kPageRows ? rows : kFirstRows);
-  for (std::size_t i = 0; i < first; ++i) kept.push_back(i);
-  const std::size_t left = rows - first;
-  const std::size_t wanted = std::min(left, kPageRows - std::min(first, kPageRows));
-  for (std::size_t k = 1; k <= wanted; ++k) kept.push_back(first + left * k / wanted - 1);
-  return kept;
-}
-
-/// Columns of web/src/report_data.ts.
-nlohmann::json table_json(const std::vector<std::string>& columns, const std::vector<std::vector<double>>& table) {
-  const std::vector<std::size_t> rows = page_rows(table.empty() ? 0 : table.front().size());
-  nlohmann::json data = nlohmann::json::array();
-  for (const std::vector<double>& column : table) {
-    std::vector<double> kept;
-    kept.reserve(rows.size());
-    for (const std::size_t row : rows) kept.push_back(short_number(column[row]));
-    data.push_back(std::move(kept));
-  }
-  return {{"columns", columns}, {"data", std::move(data)}};
-}
-
-}  // namespace
 
 VariantRecorder::VariantRecorder(Variant variant, RecorderOptions options, std::atomic<bool>& stop)
     : variant_(std::move(variant)), options_(std::move(options)), stop_(stop) {}
@@ -118,14 +61,14 @@ void VariantRecorder::on_built(const BuiltVariant& built) {
   }
   guarded([&] {
     files_.emplace_back(options_.folder / "forces.csv");
-    files_.back().write(csv_head(table_->columns()));
+    files_.back().write(csv_line(table_->columns()));
     for (const ForceTable::Further& file : table_->further()) {
       files_.emplace_back(options_.folder / ("forces_" + file.name + ".csv"));
-      files_.back().write(csv_head(file.columns));
+      files_.back().write(csv_line(file.columns));
     }
     if (!probe_columns_.empty()) {
       probe_file_ = std::make_unique<LineFile>(options_.folder / "probes.csv");
-      probe_file_->write(csv_head(probe_columns_));
+      probe_file_->write(csv_line(probe_columns_));
     }
     if (frames_) {
       view_ = std::make_unique<ViewFile>(options_.folder, options_.scene, variant_, built.instruments);
@@ -147,11 +90,11 @@ void VariantRecorder::on_sample(const Sample& sample) {
   record_probes(sample);
   const std::vector<double> row = table_->row(sample);
   for (std::size_t i = 0; i < row.size(); ++i) data_[i].push_back(row[i]);
-  guarded([&] { files_.front().write(joined(row, number_text)); });
+  guarded([&] { files_.front().write(csv_line(row)); });
   for (std::size_t i = 0; i < table_->further().size(); ++i) {
     const std::vector<double> own = ForceTable::row_of(table_->further()[i], sample);
     for (std::size_t k = 0; k < own.size(); ++k) further_data_[i][k].push_back(own[k]);
-    guarded([&] { files_[i + 1].write(joined(own, number_text)); });
+    guarded([&] { files_[i + 1].write(csv_line(own)); });
   }
 }
 
@@ -160,7 +103,7 @@ void VariantRecorder::record_probes(const Sample& sample) {
   std::vector<double> row{sample.probe_time};
   row.insert(row.end(), sample.probes.begin(), sample.probes.end());
   for (std::size_t i = 0; i < row.size(); ++i) probe_data_[i].push_back(row[i]);
-  guarded([&] { probe_file_->write(joined(row, number_text)); });
+  guarded([&] { probe_file_->write(csv_line(row)); });
 }
 
 void VariantRecorder::on_frame(const Simulation& simulation) {
@@ -216,6 +159,8 @@ nlohmann::ordered_json VariantRecorder::summary_with_tips() const {
     json[name + "across_m"] = tip.across;
     json[name + "distance_least_m"] = tip.least;
   }
+  json["checks"] = checks_json(options_.checks, summary_.end == RunSummary::End::finished,
+                               [this](const std::string& name) -> const std::vector<double>& { return column(name); });
   return json;
 }
 
@@ -240,7 +185,8 @@ nlohmann::json VariantRecorder::instruments_json() const {
 
 nlohmann::json VariantRecorder::json(double law_reach) const {
   nlohmann::json summary(summary_with_tips());
-  summary.erase("advice");  // the page has that of all variants together
+  for (const char* of_scene : {"advice", "checks"})
+    summary.erase(of_scene);  // the page has those of the scene, in words
   return {{"name", variant_.name},
           {"label", variant_.label.empty() ? variant_.name : variant_.label},
           {"summary", std::move(summary)},

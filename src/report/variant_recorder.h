@@ -18,6 +18,7 @@
 
 #include "glisson/scene/advice.h"
 #include "glisson/scene/scene.h"
+#include "report/check_result.h"
 #include "report/force_table.h"
 #include "report/frame_series.h"
 #include "report/output_file.h"
@@ -31,6 +32,7 @@ struct RecorderOptions {
   std::string scene;                       ///< name of the scene, for the summary
   int threads = 1;                         ///< for the summary
   std::size_t surface_bytes = 25'000'000;  ///< what its surface may take in the page
+  std::vector<CheckSpec> checks{};         ///< that the run is held to, for the summary
 };
 
 /// How near a tip came to the place of a probe.

@@ -55,6 +55,38 @@ void check_sets(const Variant& variant, const Node& experiment, Problems& proble
   }
 }
 
+/// What a scene of heat has no use for yet, and sets that its boundaries name and are not there.
+void check_heat_alone(const Variant& variant, const Node& experiment, Problems& problems) {
+  for (const char* key : {"tissue", "motion", "fixed", "load", "tool", "instrument", "container", "capsule", "probe"}) {
+    if (const Node* given = experiment.find(key))
+      problems.add(
+          given->where, key,
+          "belongs to mechanics, and a scene with [heat] is one of heat alone so far; leave it out, or [heat]");
+  }
+  const Node* regions = experiment.find("region");
+  for (std::size_t i = 0; regions && i < regions->array()->size(); ++i) {
+    const Node* tissue = (*regions->array())[i].find("tissue");
+    if (tissue && !tissue->table()->empty())
+      problems.add(tissue->where, "region." + std::to_string(i) + ".tissue",
+                   "belongs to mechanics; give a [[heat.tissue]] with `region` = the name of this one");
+  }
+  const Node* output = experiment.find("output");
+  for (const char* key : {"sample_rate_hz", "stored_energy"}) {
+    if (const Node* given = output ? output->find(key) : nullptr)
+      problems.add(given->where, std::string("output.") + key,
+                   "belongs to mechanics; lines of temperature.csv are `heat.sample_every_s` apart");
+  }
+  if (std::holds_alternative<MeshFile>(variant.mesh)) return;
+  std::vector<std::string> known = generated_sets(variant.mesh);
+  for (const auto& [name, selection] : variant.sets) known.push_back(name);
+  for (std::size_t i = 0; i < variant.heat->boundaries.size(); ++i) {
+    const std::string& set = variant.heat->boundaries[i].set;
+    if (set.empty() || std::find(known.begin(), known.end(), set) != known.end()) continue;
+    const Node& given = *(*experiment.find("heat")->find("boundary")->array())[i].find("set");
+    problems.add(given.where, "heat.boundary." + std::to_string(i) + ".set", no_such_set(set, known));
+  }
+}
+
 /// Complains about every element of `list` whose `name` an earlier one has.
 void check_names(const Array& list, const std::string& path, Problems& problems) {
   std::set<std::string> seen;
@@ -284,6 +316,7 @@ Variant scene::read_variant(const Node& experiment, const std::filesystem::path&
   const std::size_t before = problems.count();
   read_section(variant_section(), experiment, &variant, {problems, "", experiment.where});
   if (problems.count() > before) return variant;
+  if (variant.heat) check_heat_alone(variant, experiment, problems);
   auto* file = std::get_if<MeshFile>(&variant.mesh);
   if (file && file->path.is_relative()) file->path = base / file->path;
   if (auto* body = std::get_if<ImplicitBody>(&variant.mesh)) complete_surfaces(*body, experiment, base, problems);
@@ -325,6 +358,12 @@ Scene parse_scene(std::string_view text, const std::string& name, const std::fil
   for (const Node& experiment : expanded.variants) result.variants.push_back(read_variant(experiment, base, problems));
   if (problems.count() == 0) {
     check_names(expanded.variants, "variant", problems);
+    const auto is_heat = [](const Variant& v) { return v.heat.has_value(); };
+    if (!std::all_of(result.variants.begin(), result.variants.end(), is_heat) &&
+        std::any_of(result.variants.begin(), result.variants.end(), is_heat)) {
+      problems.add(root.where, "variant",
+                   "some variants have [heat] and others have not; put these into a scene of their own");
+    }
     check_variants("chart", result.charts, result, expanded.scene, problems);
     check_variants("check", result.checks, result, expanded.scene, problems);
     load_measured(result, expanded.scene, base, problems);

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "glisson/scene/heat_run.h"
 #include "glisson/scene/scene.h"
 
 namespace {
@@ -45,6 +46,10 @@ void require_sound(const glisson::Variant& v) {
   } catch (const std::invalid_argument& error) {
     require(false, error.what());
   }
+  if (v.heat) {
+    require(v.heat->duration > 0.0 && v.heat->sample_every > 0.0, "a run of heat ends");
+    for (const auto& tissue : v.heat->tissues) require(tissue.tissue.check().what.empty(), "latent heat has a range");
+  }
   require(v.output.sample_rate > 0.0 && std::isfinite(v.output.sample_rate), "the sample rate is a rate");
   require(!v.simulation.step || *v.simulation.step > 0.0, "a step is longer than nothing");
   require(v.max_steps || std::isfinite(glisson::run_duration(v)), "a run ends");
@@ -71,7 +76,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const glisson::Scene scene = glisson::parse_scene(text, "fuzz.toml", "/scenes", overrides_of(text));
     require(!scene.variants.empty(), "there is a variant");
     for (const glisson::Variant& v : scene.variants) require_sound(v);
-    if (is_small(scene.variants.front())) glisson::build_mesh(scene.variants.front(), {});
+    const glisson::Variant& first = scene.variants.front();
+    if (is_small(first) && first.heat)
+      glisson::BuiltHeat(first, {}).read();
+    else if (is_small(first))
+      glisson::build_mesh(first, {});
   } catch (const glisson::SceneError& error) {
     require(std::string_view(error.what()).substr(0, 9) == "fuzz.toml", "a message begins with the file");
   }

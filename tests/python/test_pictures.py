@@ -131,6 +131,33 @@ def with_cells(file: Path, name: str, values: np.ndarray) -> None:
     file.write_bytes(front + body + base64.b64encode(head) + base64.b64encode(packed) + text[end:])
 
 
+def test_a_run_of_heat_is_coloured_by_temperature(program, tmp_path):
+    """Without a displacement the body stays at rest, and its cut face has the temperatures of the frame."""
+    scene = """
+[mesh]
+kind = "box"
+cells = [6, 6, 6]
+size_m = [0.03, 0.03, 0.03]
+[heat]
+duration_s = 60
+[[heat.tissue]]
+preset = "agar"
+[[heat.boundary]]
+set = "x_min"
+temperature_C = -60
+[output]
+frames = 2
+"""
+    (tmp_path / "s.toml").write_text(scene, encoding="utf-8")
+    subprocess.run([program, "run", "s.toml", "--out", "o", "--quiet"], cwd=tmp_path, check=True)
+    figure = glisson.picture(tmp_path / "o", cut="y=15mm", size=(400, 300), file=tmp_path / "p.png")
+    words = " ".join(text.get_text() for text in figure.findobj(mpl.text.Text))
+    assert "temperature" in words and "°C" in words
+    assert (tmp_path / "p.png").stat().st_size > 2000
+    with pytest.raises(ValueError, match="no von_mises_Pa"):
+        glisson.picture(tmp_path / "o", colour="von_mises")
+
+
 def test_removed_tets_are_not_drawn(out, tmp_path):
     """Tets that `removed` names are gone from the picture, its cut and its colour scale."""
     from glisson._frames import read_frame

@@ -514,6 +514,174 @@ TEST(EveryKey, OfTheLiverIsRead) {
   EXPECT_EQ(l.growth, 0.2);
 }
 
+/// Keys of [heat], which is a scene of its own.
+const std::string kHeatKeys = R"([mesh]
+kind = "box"
+[heat]
+duration_s = 120
+sample_every_s = 4
+temperature_C = 35
+step_s = 0.5
+first_step_s = 0.02
+longest_step_s = 30
+tolerance_K = 0.1
+isotherms_C = [-5, -15]
+[[heat.tissue]]
+preset = "soft_tissue"
+region = "core"
+density_kg_m3 = 1010
+conductivity_W_m_K = 0.51
+frozen_conductivity_W_m_K = 2.1
+specific_heat_J_kg_K = 3610
+frozen_specific_heat_J_kg_K = 1810
+latent_heat_J_kg = 251e3
+freezing_begins_C = -1.5
+freezing_ends_C = -8.5
+perfusion_per_s = 6e-4
+blood_temperature_C = 36
+blood_heat_capacity_J_m3_K = 3.7e6
+metabolic_heat_W_m3 = 4300
+death = { cold_C = -20, cold_time_s = 60, ln_frequency_factor = 200, activation_energy_J_mol = 6e5 }
+[[heat.boundary]]
+set = "x_min"
+times_s = [0, 60]
+temperatures_C = [-10, -20]
+coefficient_W_m2_K = 25
+cycles = 2
+[[heat.boundary]]
+region = "core"
+temperature_C = 36.5
+[[heat.boundary]]
+set = "x_max"
+flux_W_m2 = 100
+[[heat.boundary]]
+set = "y_max"
+times_s = [0, 30]
+fluxes_W_m2 = [1, 2]
+[[heat.probe]]
+name = "left"
+from_m = [0.01, 0.01, 0.01]
+to_m = [0.01, 0.01, 0.05]
+active_length_mm = 30
+radius_mm = 0.75
+times_s = [0, 50]
+temperatures_C = [-140, -150]
+coefficients_W_m_K = [5, 6]
+[[heat.probe]]
+name = "right"
+from_m = [0.02, 0.01, 0.01]
+to_m = [0.02, 0.01, 0.05]
+temperature_C = -100
+coefficient_W_m_K = 4
+[[heat.probe]]
+name = "middle"
+from_m = [0.02, 0.02, 0.01]
+to_m = [0.02, 0.02, 0.05]
+power_W_m = -200
+[[heat.probe]]
+name = "fourth"
+from_m = [0.03, 0.02, 0.01]
+to_m = [0.03, 0.02, 0.05]
+times_s = [0, 10]
+powers_W_m = [-100, -200]
+[[heat.power]]
+region = "core"
+power_W_m3 = 1e5
+[[heat.power]]
+times_s = [0, 10]
+powers_W_m3 = [0, 1e5]
+[[heat.sensor]]
+name = "one"
+point_m = [0.01, 0.02, 0.03]
+[[heat.sensor]]
+name = "row"
+from_m = [0, 0, 0]
+to_m = [0.01, 0, 0]
+count = 4
+[[heat.sensor]]
+name = "mean"
+region = "core"
+[[heat.front]]
+name = "ice"
+from_m = [0, 0, 0]
+to_m = [0.02, 0, 0]
+temperature_C = -2
+above_C = -30
+[[heat.isotherm]]
+name = "kill"
+temperature_C = -40
+region = "core"
+plane_m = { point = [0, 0, 0.01], normal = [0, 1, 1] }
+[[check]]
+what = "w"
+column = "kill_area_m2"
+over = "kill_volume_m3"
+expected = 2
+tolerance = 0.5
+[[check]]
+what = "w"
+column = "frozen_m3"
+expected = -4
+tolerance_percent = 10
+)";
+
+// Every key of [heat] and of checks arrives.
+TEST(EveryKey, OfHeatIsRead) {
+  const Scene scene = parse(kHeatKeys);
+  const HeatSpec& h = *scene.variants.at(0).heat;
+  EXPECT_EQ(h.duration, 120.0);
+  EXPECT_EQ(h.sample_every, 4.0);
+  EXPECT_EQ(h.options.temperature, 35.0);
+  EXPECT_EQ(h.options.step, 0.5);
+  EXPECT_EQ(h.options.first_step, 0.02);
+  EXPECT_EQ(h.options.longest_step, 30.0);
+  EXPECT_EQ(h.options.tolerance, 0.1);
+  EXPECT_THAT(h.options.isotherms, ElementsAre(-5.0, -15.0));
+  ASSERT_EQ(h.tissues.size(), 1U);
+  EXPECT_EQ(h.tissues[0].region, "core");
+  ThermalTissue t{.density = 1010, .conductivity = 0.51, .frozen_conductivity = 2.1, .specific_heat = 3610};
+  t.frozen_specific_heat = 1810, t.latent_heat = 251e3, t.freezing_begins = -1.5, t.freezing_ends = -8.5;
+  t.perfusion = 6e-4, t.blood_temperature = 36, t.blood_heat_capacity = 3.7e6, t.metabolic_heat = 4300;
+  t.death = TissueDeath{.cold = -20, .cold_time = 60, .ln_frequency_factor = 200, .activation_energy = 6e5};
+  EXPECT_EQ(h.tissues[0].tissue, t);
+  ASSERT_EQ(h.boundaries.size(), 4U);
+  EXPECT_EQ(h.boundaries[0].set, "x_min");
+  EXPECT_THAT(h.boundaries[0].times, ElementsAre(0.0, 60.0));
+  EXPECT_THAT(h.boundaries[0].temperatures, ElementsAre(-10.0, -20.0));
+  EXPECT_EQ(h.boundaries[0].coefficient, 25.0);
+  EXPECT_EQ(h.boundaries[0].cycles, 2);
+  EXPECT_EQ(h.boundaries[1].region, "core");
+  EXPECT_EQ(h.boundaries[1].temperature, 36.5);
+  EXPECT_EQ(h.boundaries[2].flux, 100.0);
+  EXPECT_THAT(h.boundaries[3].fluxes, ElementsAre(1.0, 2.0));
+  ASSERT_EQ(h.probes.size(), 4U);
+  EXPECT_EQ(h.probes[0].name, "left");
+  EXPECT_EQ(h.probes[0].from, (Vec3d{0.01, 0.01, 0.01}));
+  EXPECT_EQ(h.probes[0].to, (Vec3d{0.01, 0.01, 0.05}));
+  EXPECT_DOUBLE_EQ(*h.probes[0].active_length, 0.03);
+  EXPECT_DOUBLE_EQ(h.probes[0].radius, 0.00075);
+  EXPECT_THAT(h.probes[0].temperatures, ElementsAre(-140.0, -150.0));
+  EXPECT_THAT(h.probes[0].coefficients, ElementsAre(5.0, 6.0));
+  EXPECT_EQ(h.probes[1].temperature, -100.0);
+  EXPECT_EQ(h.probes[1].coefficient, 4.0);
+  EXPECT_EQ(h.probes[2].power, -200.0);
+  EXPECT_THAT(h.probes[3].powers, ElementsAre(-100.0, -200.0));
+  EXPECT_EQ(h.powers.at(0).power, 1e5);
+  EXPECT_THAT(h.powers.at(1).powers, ElementsAre(0.0, 1e5));
+  EXPECT_EQ(h.sensors.at(0).point, (Vec3d{0.01, 0.02, 0.03}));
+  EXPECT_EQ(h.sensors.at(1).count, 4);
+  EXPECT_EQ(h.sensors.at(2).region, "core");
+  EXPECT_EQ(h.fronts.at(0).temperature, -2.0);
+  EXPECT_EQ(h.fronts[0].above, -30.0);
+  EXPECT_EQ(h.isotherms.at(0).temperature, -40.0);
+  EXPECT_EQ(h.isotherms[0].region, "core");
+  EXPECT_EQ(h.isotherms[0].plane->normal, (Vec3d{0, 1, 1}));
+  EXPECT_EQ(scene.checks.at(0).over, "kill_volume_m3");
+  EXPECT_EQ(scene.checks[0].at_least, 1.5);
+  EXPECT_EQ(scene.checks[0].at_most, 2.5);
+  EXPECT_NEAR(*scene.checks.at(1).tolerance, 0.4, 1e-15);
+}
+
 /// Every key of a section and of the sections in it.
 void collect(const scene::SectionSpec& section, std::set<std::string>& keys) {
   for (const scene::KeySpec& key : section.keys) {
@@ -532,7 +700,7 @@ TEST(EveryKey, IsInTheSceneOfThisTest) {
   collect(scene::scene_section(), keys);
   collect(scene::variant_section(), keys);
   EXPECT_GT(keys.size(), 60u);
-  const std::string text = kEveryKey + kRotations + kPalpation + kAims + test::kEveryInstrument;
+  const std::string text = kEveryKey + kHeatKeys + kRotations + kPalpation + kAims + test::kEveryInstrument;
   for (const char* key : {"path", "file", "record", "poses", "x_offset"})
     keys.erase(key);  // of files, which have tests of their own
   for (const std::string& key : keys) EXPECT_NE(text.find(key), std::string::npos) << key;

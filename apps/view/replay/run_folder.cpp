@@ -64,6 +64,11 @@ fs::path variant_folder(const fs::path& folder, const std::string& wanted, RunFo
 }
 
 void take_frames(const fs::path& folder, RunFolder& run) {
+  if (is_file(folder / "heat.csv")) {
+    refuse(folder,
+           "a run of heat, which the view does not show yet; open report.html, draw it by `glisson picture`, or open "
+           "frames.pvd in ParaView");
+  }
   const std::size_t named = [&] {
     std::vector<std::pair<double, fs::path>> frames;
     try {

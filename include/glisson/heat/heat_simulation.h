@@ -14,13 +14,17 @@
 #pragma once
 
 #include <cstdint>
+#include <iosfwd>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "glisson/archive.h"
 #include "glisson/field.h"
+#include "glisson/heat/heat_history.h"
 #include "glisson/heat/thermal_tissue.h"
 #include "glisson/mesh.h"
 #include "glisson/time_function.h"
@@ -33,7 +37,8 @@ struct HeatOptions {
   double first_step = 0.01;    ///< of those [s]
   double longest_step = 60.0;  ///< of those [s]
   double tolerance = 0.02;     ///< error of temperature that one step may add, mean square over the volume [K]
-  int threads = 0;             ///< 0: chosen by the size of the body; the result is the same bytes on any number
+  std::vector<double> isotherms{0.0, -20.0, -40.0};  ///< for which the time below them is kept, place by place [°C]
+  int threads = 0;  ///< 0: chosen by the size of the body; the result is the same bytes on any number
 
   template <class Take>
   static constexpr auto fields(Take take) {
@@ -46,14 +51,24 @@ struct HeatOptions {
                 field("longest_step", &O::longest_step, "s", above(0), "the longest of these"),
                 field("tolerance", &O::tolerance, "K", above(0),
                       "error of temperature that one step may add, mean square over the volume"),
+                field("isotherms", &O::isotherms, "°C", between(-200, 200),
+                      "for which the time below them is kept, place by place")
+                    .keyed("isotherms_C")
+                    .advise("temperatures are in °C, not in K"),
                 no_key("threads", &O::threads, between(0, 1024)));
   }
 };
 
-/// A line that gives heat, such as the active length of a probe.
+/// A line that gives heat, such as the active length of a probe: a power, or c (T_s − T) of a surface at T_s. Each is a function of
+/// time [s]; those that are not given do nothing.
 struct LineSource {
   Vec3d from{}, to{};                       ///< at rest [m]
-  TimeFunction<double> power_per_length{};  ///< [W/m], below 0: it cools; a function of time [s]
+  TimeFunction<double> power_per_length{};  ///< [W/m], below 0: it cools
+  TimeFunction<double> temperature{};       ///< of the surface, T_s [°C]; with a coefficient
+  TimeFunction<double> coefficient{};       ///< c ≥ 0, of the whole circumference and what lies on it [W/(m K)]
+  /// On which the heat is given, around the line [m]; 0: on the line itself. On a mesh that is coarser than it, T is that of the
+  /// mesh around the line, and c one of this mesh.
+  double radius = 0.0;
 };
 
 /// Where heat came from since the start [J]; what flows in counts positive.
@@ -97,6 +112,9 @@ struct HeatState {
   double step_before = 0.0, wanted = 0.0;  ///< length of the last step, and of the next as the error of that allows [s]
   HeatLedger ledger;
   double limited_share = 0.0;  ///< conduction that the limiter took away over all conduction, of the last step [-]
+  HeatHistory history;         ///< what each vertex has been through
+
+  void archive(Archive& ar);
 };
 
 /// Of a mesh at rest. Moving it moves its contents; a copy shares nothing.
@@ -118,25 +136,35 @@ class HeatSimulation {
   void add_convection(const std::string& set, double coefficient, TimeFunction<double> ambient);
   /// Heat per volume of a region [W/m³].
   void add_source(int region, TimeFunction<double> power_per_volume);
-  /// @throws std::invalid_argument where a part of it lies outside the body
+  /// @throws std::invalid_argument where a part of it lies outside the body, or it gives no heat
   void add_line_source(const LineSource& source);
 
   /// One step, of the length that the options give; the state is as before it where it did not converge.
   HeatStep step();
+  /// One step that does not go beyond a time, which lies ahead [s].
+  HeatStep step_towards(double time);
   /// Steps to a time, the last one as long as is left. @param time  [s]
   HeatStep advance_to(double time);
 
   const HeatState& state() const;
   /// Goes on from a state of this simulation. @throws std::invalid_argument where it is of another mesh
   void load_state(HeatState state);
+  /// Writes the state: bytes from which a simulation of the same mesh, tissues and options goes on with the same bytes.
+  void save(std::ostream& out) const;
+  /// @throws std::runtime_error for bytes that are no state of such a simulation; it then stays as it is
+  void load(std::istream& in);
 
   double time() const;
   const TetMesh& mesh() const;
   std::span<const double> temperature() const;  ///< of every vertex [°C]
   /// Of every vertex the share that is frozen of its part of the body; moves on while a row of vertices freezes.
-  double frozen_volume() const;  ///< [m³]
+  /// @param region  number; none: of the whole body
+  double frozen_volume(std::optional<int> region = {}) const;  ///< [m³]
+  std::vector<double> frozen_share() const;                    ///< that of every vertex [-]
   /// Volume that is colder than an isotherm; temperature is linear within tets [m³].
-  double volume_below(double temperature) const;
+  double volume_below(double temperature, std::optional<int> region = {}) const;
+  /// Volume of the vertices' parts that have died [m³].
+  double dead_volume(std::optional<int> region = {}) const;
   HeatLedger ledger() const;
   std::size_t steps() const;
   const HeatWork& work() const;

@@ -4,12 +4,38 @@
 //   conduction                  ∇·(k ∇T),  k from that of tissue to that of ice across the range
 //   blood and metabolism        f (w ρ_b c_b (T_b − T) + q),  f the share that is not frozen          [Pennes1948]
 //
-// Latent heat is part of H, so no step of any length passes over it.
+// Latent heat is part of H, so no step of any length passes over it. Tissue that has died has no blood and no metabolism any more.
 #pragma once
+
+#include <optional>
 
 #include "glisson/field.h"
 
 namespace glisson {
+
+/// When tissue dies: of cold, once it has been colder than `cold` for `cold_time` in all [GageBaust1998], or of heat, at Ω ≥ 1,
+///   Ω = ∫ A exp(−E/(R T)) dt                                                                      [HenriquesMoritz1947]
+/// with A and E of that work, for skin.
+struct TissueDeath {
+  double cold = -40.0;                    ///< [°C]
+  double cold_time = 0.0;                 ///< [s]; 0: at once
+  double ln_frequency_factor = 226.7847;  ///< ln A, A in 1/s: that of 3.1e98 [-]; 0: heat does not kill
+  double activation_energy = 6.28e5;      ///< E [J/mol]
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    using D = TissueDeath;
+    return take(
+        field("cold", &D::cold, "°C", between(-200, 60), "tissue dies that has been colder than this")
+            .keyed("cold_C")
+            .advise("temperatures are in °C, not in K"),
+        field("cold_time", &D::cold_time, "s", at_least(0), "for this long in all; 0: at once"),
+        field("ln_frequency_factor", &D::ln_frequency_factor, "-", between(0, 1000),
+              "ln A, A in 1/s, of the damage by heat, ∫ A exp(−E/(R T)) dt, dead from 1 on; 0: heat does not kill"),
+        field("activation_energy", &D::activation_energy, "J/mol", at_least(0), "E of it"));
+  }
+  bool operator==(const TissueDeath&) const = default;
+};
 
 /// Temperatures are in °C. The density counts for tissue and ice alike: the mesh does not move when water expands.
 struct ThermalTissue {
@@ -25,6 +51,7 @@ struct ThermalTissue {
   double blood_temperature = 37.0;       ///< of arteries, T_b [°C]
   double blood_heat_capacity = 3.6e6;    ///< ρ_b c_b [J/(m³ K)]
   double metabolic_heat = 0.0;           ///< q [W/m³]
+  std::optional<TissueDeath> death{};    ///< none: it does not die
 
   template <class Take>
   static constexpr auto fields(Take take) {
@@ -43,7 +70,8 @@ struct ThermalTissue {
                 field("blood_temperature", &T::blood_temperature, "°C", between(0, 60), "of arteries")
                     .keyed("blood_temperature_C"),
                 field("blood_heat_capacity", &T::blood_heat_capacity, "J/(m³ K)", above(0), "of blood, per volume"),
-                field("metabolic_heat", &T::metabolic_heat, "W/m³", at_least(0), "heat of metabolism"));
+                field("metabolic_heat", &T::metabolic_heat, "W/m³", at_least(0), "heat of metabolism"),
+                field("death", &T::death, "when it dies, and has no blood any more").otherwise("it does not die"));
   }
   Fault check() const;
   bool operator==(const ThermalTissue&) const = default;

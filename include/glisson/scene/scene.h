@@ -55,8 +55,12 @@ struct ChartSpec {
 struct CheckSpec {
   enum class At { end, largest, least, peak };
   std::string what;    ///< a sentence
-  std::string column;  ///< of forces.csv or probes.csv
+  std::string column;  ///< of forces.csv or probes.csv, of a scene of heat of temperature.csv or heat.csv
+  std::string over;    ///< a column that it is divided by, line by line; empty: none
   At at = At::end;
+  std::optional<double> expected;  ///< with a tolerance, in place of the bounds, which follow
+  std::optional<double> tolerance,
+      tolerance_percent;                    ///< one of them: in the unit of the column, or of what is expected
   std::optional<double> at_least, at_most;  ///< in the unit of the column, one of them or both
   std::vector<std::string> variants;        ///< names; empty: all
 };
@@ -149,7 +153,8 @@ struct RunSummary {
     stopped_not_finite,
     stopped_not_converged,
     stopped_not_held,
-    stopped_energy
+    stopped_energy,
+    stopped_too_cold
   } end = End::finished;
   std::string trouble;  ///< why the last step was not made and what to do; empty if all were
 };
@@ -163,7 +168,8 @@ inline constexpr Word<RunSummary::End> kWords<RunSummary::End>[] = {
     {"stopped_not_finite", RunSummary::End::stopped_not_finite, "a number is not finite"},
     {"stopped_not_converged", RunSummary::End::stopped_not_converged, "no equilibrium was found"},
     {"stopped_not_held", RunSummary::End::stopped_not_held, "supports and tools leave a rigid motion free"},
-    {"stopped_energy", RunSummary::End::stopped_energy, "the body has ten times the energy that was put into it"}};
+    {"stopped_energy", RunSummary::End::stopped_energy, "the body has ten times the energy that was put into it"},
+    {"stopped_too_cold", RunSummary::End::stopped_too_cold, "a temperature is below absolute zero"}};
 
 /// The end of a run whose step had this status; `finished` if the run continues.
 RunSummary::End end_of(StepStatus status, OnInversion on_inversion);
@@ -197,7 +203,7 @@ int most_drag_stages(const Variant& variant);
 
 /// The body of a variant with its supports, loads, instruments and probes, at rest.
 struct BuiltVariant {
-  /// @throws SceneError if mesh, sets, tissues, step or constraints cannot be used
+  /// @throws SceneError if mesh, sets, tissues, step or constraints cannot be used, or it is of heat
   BuiltVariant(const Variant& variant, const MeshLoader& load);
 
   std::vector<ConstraintId> supports;                    ///< per variant.fixed
@@ -213,7 +219,7 @@ struct BuiltVariant {
 /// @throws SceneError, as BuiltVariant
 BuiltVariant build_variant(const Variant& variant, const MeshLoader& load);
 
-/// Time at which a variant's run ends [s]; infinite where only max_steps ends it.
+/// Time at which a variant's run ends [s], one of heat too; infinite where only max_steps ends it.
 double run_duration(const Variant& variant);
 
 /// Builds and runs a variant to its end, or until `stop` is set.

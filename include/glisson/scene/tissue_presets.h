@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "glisson/heat/thermal_tissue.h"
 #include "glisson/material/tissue.h"
 
 namespace glisson {
@@ -25,5 +26,17 @@ const std::vector<TissuePreset>& tissue_presets();
 
 /// The preset of that name. @throws std::invalid_argument naming the nearest one, or all
 const TissuePreset& tissue_preset(std::string_view name);
+
+/// What a tissue is to heat, `preset = "NAME"` of a [[heat.tissue]].
+struct ThermalPreset {
+  std::string name, what, source, confirmed;  ///< as above
+  ThermalTissue tissue;
+};
+
+/// All of them, in the order of the list.
+const std::vector<ThermalPreset>& thermal_presets();
+
+/// The thermal tissue of that name. @throws std::invalid_argument naming all
+const ThermalTissue& thermal_preset(std::string_view name);
 
 }  // namespace glisson

@@ -26,6 +26,7 @@
 #include "glisson/liver.h"
 #include "glisson/material/tissue.h"
 #include "glisson/mesh.h"
+#include "glisson/scene/heat_spec.h"
 #include "glisson/simulation/probe.h"
 #include "glisson/simulation/simulation.h"
 
@@ -348,6 +349,7 @@ struct Variant {
   std::vector<CapsuleSpec> capsules;
   std::optional<ContainerSpec> container;
   std::vector<ProbeSpec> probes;
+  std::optional<HeatSpec> heat;  ///< of a scene of heat, which has no mechanics: heat_run.h runs it
   SimulationOptions simulation;
   OnInversion on_inversion = OnInversion::go_on;
   std::optional<double> duration;          ///< [s]; none: until the last motion has ended

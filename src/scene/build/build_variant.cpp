@@ -153,6 +153,15 @@ auto constrained(const Variant& variant, const std::string& origin, const std::s
   });
 }
 
+const Variant& with_mechanics(const Variant& variant) {
+  if (variant.heat) {
+    fail(variant, variant.heat->origin,
+         "the scene is one of heat, which `glisson run` and `glisson check` take, BuiltHeat and run_heat in C++, and "
+         "HeatSimulation in Python; what was asked for needs mechanics");
+  }
+  return variant;
+}
+
 std::vector<std::shared_ptr<Instrument>> make_instruments(const Variant& variant, const TetMesh& mesh) {
   std::vector<std::shared_ptr<Instrument>> made;
   for (const ToolSpec& x : variant.tools) {
@@ -273,7 +282,7 @@ std::map<int, Tissue> region_tissues(const Variant& variant, const TetMesh& mesh
 }
 
 BuiltVariant::BuiltVariant(const Variant& variant, const MeshLoader& load)
-    : BuiltVariant(build_mesh(variant, load), variant) {}
+    : BuiltVariant(build_mesh(with_mechanics(variant), load), variant) {}
 
 BuiltVariant::BuiltVariant(TetMesh whole, const Variant& variant)
     : instruments(make_instruments(variant, whole)), simulation(simulation_of(variant, std::move(whole), instruments)) {
@@ -340,6 +349,7 @@ std::optional<RigidPath> turning_path(const ToolSpec& tool) {
 }
 
 double run_duration(const Variant& variant) {
+  if (variant.heat) return variant.heat->duration;
   if (variant.duration) return *variant.duration;
   double end = 0.0;
   bool ends = false;

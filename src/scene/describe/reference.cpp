@@ -59,6 +59,16 @@ std::string scene_reference_markdown() {
   text += section_text(capsule_section(), "`[[capsule]]`");
   text += section_text(probe_section(), "`[[probe]]`");
   text += section_text(probe_plane_section(), "`[probe.plane_m]`");
+  text += section_text(heat_section(), "`[heat]`");
+  text += section_text(heat_tissue_section(), "`[[heat.tissue]]`");
+  text += section_text(tissue_death_section(), "`[heat.tissue.death]`");
+  text += section_text(heat_boundary_section(), "`[[heat.boundary]]`");
+  text += section_text(heat_probe_section(), "`[[heat.probe]]`");
+  text += section_text(heat_power_section(), "`[[heat.power]]`");
+  text += section_text(heat_sensor_section(), "`[[heat.sensor]]`");
+  text += section_text(heat_front_section(), "`[[heat.front]]`");
+  text += section_text(heat_isotherm_section(), "`[[heat.isotherm]]`");
+  text += section_text(heat_plane_section(), "`[heat.isotherm.plane_m]`");
   text += section_text(output_section(), "`[output]`");
   text += section_text(chart_section(), "`[[chart]]`");
   text += section_text(measured_section(), "`[[chart.measured]]`");

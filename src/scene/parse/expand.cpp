@@ -89,6 +89,12 @@ void put_presets(Node& experiment, const std::filesystem::path& files, Problems&
     tissue = with_preset(tissue, named, place);
   };
   if (Node* tissue = experiment.find("tissue")) put(*tissue, true, {problems, "tissue", tissue->where});
+  Node* heat = experiment.find("heat");
+  Node* thermal = heat && heat->table() ? heat->find("tissue") : nullptr;
+  for (std::size_t i = 0; thermal && thermal->array() && i < thermal->array()->size(); ++i) {
+    Node& own = (*thermal->array())[i];
+    if (own.table()) own = with_thermal_preset(own, {problems, "heat.tissue." + std::to_string(i), own.where});
+  }
   Node* regions = experiment.find("region");
   if (!regions || !regions->array()) return;
   for (std::size_t i = 0; i < regions->array()->size(); ++i) {

@@ -14,13 +14,15 @@ namespace {
 
 using namespace scene;
 
-const Array& preset_nodes() {
+const Node& preset_list() {
   static const Node root = parse_document(kPresetList, "preset_list.toml");
-  return *root.find("preset")->array();
+  return root;
 }
+const Array& preset_nodes() { return *preset_list().find("preset")->array(); }
+const Array& thermal_nodes() { return *preset_list().find("thermal")->array(); }
 
-const Node* find_preset(std::string_view name) {
-  for (const Node& node : preset_nodes()) {
+const Node* find_preset(std::string_view name, const Array& nodes = preset_nodes()) {
+  for (const Node& node : nodes) {
     if (*node.find("name")->text() == name) return &node;
   }
   return nullptr;
@@ -89,6 +91,19 @@ const SectionSpec& preset_section() {
   return section;
 }
 
+std::vector<ThermalPreset> read_thermal_presets() {
+  Problems problems("preset_list.toml");
+  std::vector<ThermalPreset> presets;
+  for (const Node& node : thermal_nodes()) {
+    const auto text = [&node](const char* key) { return *node.find(key)->text(); };
+    HeatTissueSpec read;
+    read_section(heat_tissue_section(), *node.find("tissue"), &read, {problems, "thermal.tissue", node.where});
+    presets.push_back({text("name"), text("what"), text("source"), text("confirmed"), read.tissue});
+  }
+  problems.throw_if_any();
+  return presets;
+}
+
 std::vector<TissuePreset> read_presets() {
   Problems problems("preset_list.toml");
   std::vector<TissuePreset> presets;
@@ -110,6 +125,28 @@ const std::vector<AllowedWord>& preset_words() {
     return list;
   }();
   return words;
+}
+
+const std::vector<AllowedWord>& thermal_preset_words() {
+  static const std::vector<AllowedWord> words = [] {
+    std::vector<AllowedWord> list;
+    for (const Node& node : thermal_nodes()) list.push_back({*node.find("name")->text(), *node.find("what")->text()});
+    return list;
+  }();
+  return words;
+}
+
+Node with_thermal_preset(const Node& tissue, const Place& place) {
+  const Node* word = tissue.find("preset");
+  const Node* preset = word && word->text() ? find_preset(*word->text(), thermal_nodes()) : nullptr;
+  if (!preset) return tissue;
+  Node base = *preset->find("tissue");
+  set_origin(base, word->where);
+  Node own = tissue;
+  std::erase_if(*own.table(), [](const Member& m) { return m.key == "preset"; });
+  Node result = merged(heat_tissue_section(), base, own, place);
+  result.table()->push_back({"preset", word->where, *word});
+  return result;
 }
 
 Node with_preset(const Node& tissue, bool named, const Place& place) {
@@ -134,6 +171,21 @@ Node with_preset(const Node& tissue, bool named, const Place& place) {
 }
 
 }  // namespace scene
+
+const std::vector<ThermalPreset>& thermal_presets() {
+  static const std::vector<ThermalPreset> presets = read_thermal_presets();
+  return presets;
+}
+
+const ThermalTissue& thermal_preset(std::string_view name) {
+  std::vector<std::string> names;
+  for (const ThermalPreset& p : thermal_presets()) {
+    if (p.name == name) return p.tissue;
+    names.push_back(p.name);
+  }
+  throw std::invalid_argument("there is no thermal preset \"" + std::string(name) + "\"; the presets are " +
+                              scene::listed(names));
+}
 
 const std::vector<TissuePreset>& tissue_presets() {
   static const std::vector<TissuePreset> presets = read_presets();

@@ -23,4 +23,8 @@ const std::vector<AllowedWord>& preset_words();
 /// as it is; the checker says what is wrong with it. Complains of a key that would drop the preset's hyperelastic law.
 Node with_preset(const Node& tissue, bool named, const Place& place);
 
+/// The same of `heat.tissue.preset`.
+const std::vector<AllowedWord>& thermal_preset_words();
+Node with_thermal_preset(const Node& tissue, const Place& place);
+
 }  // namespace glisson::scene

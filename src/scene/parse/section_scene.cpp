@@ -1,4 +1,6 @@
 // section_scene.cpp — the top level: what a scene says once, and what each of its variants consists of.
+#include <cmath>
+
 #include "glisson/scene/scene.h"
 #include "scene/parse/result_names.h"
 #include "scene/parse/section.h"
@@ -74,23 +76,54 @@ const SectionSpec& chart_section() {
   return section;
 }
 
+namespace {
+
+/// What is expected as bounds, and that there are some.
+void complete_check(CheckSpec& c, const Node& table, const Place& place) {
+  if (c.expected) {
+    if (!c.tolerance && !c.tolerance_percent)
+      return place.complain(*table.find("expected"), "expected", "needs `tolerance` or `tolerance_percent` with it");
+    if (!c.tolerance) c.tolerance = 0.01 * *c.tolerance_percent * std::abs(*c.expected);
+    c.at_least = *c.expected - *c.tolerance, c.at_most = *c.expected + *c.tolerance;
+    return;
+  }
+  for (const char* key : {"tolerance", "tolerance_percent"}) {
+    if (const Node* given = table.find(key))
+      return place.complain(*given, key, "belongs to `expected`; give it, or bounds");
+  }
+  if (!c.at_least && !c.at_most)
+    return place.complain("has no bound; give `at_least`, `at_most` or both, or `expected` with a tolerance");
+  if (c.at_least && c.at_most && *c.at_least > *c.at_most)
+    place.complain("`at_least` is above `at_most`; no value can be within them");
+}
+
+}  // namespace
+
 const SectionSpec& check_section() {
   static const SectionSpec section = [] {
     using C = CheckSpec;
-    Section<C> s("check",
-                 "What a run is expected to give. `glisson run` and the report say whether it does; where it does not, "
-                 "the program ends with status 1.");
+    Section<C> s(
+        "check",
+        "What a run is expected to give. `glisson run`, summary.json and the report say whether it does; where it "
+        "does not, the program ends with status 1.");
     s.key("what", &C::what, "a sentence that says so").must();
-    s.key("column", &C::column, "column of forces.csv or probes.csv").must();
+    s.key("column", &C::column, "column of forces.csv or probes.csv, with `[heat]` of temperature.csv or heat.csv")
+        .must();
+    s.key("over", &C::over, "a column that it is divided by, line by line").otherwise("none");
     s.key("at", &C::at, "which of its values");
+    s.key("expected", &C::expected, "what is expected, in the unit of the column; with a tolerance").otherwise("none");
+    s.key("tolerance", &C::tolerance, "how far the value may be from it, in the same unit")
+        .within(at_least(0))
+        .otherwise("none");
+    s.key("tolerance_percent", &C::tolerance_percent, "the same as a share of what is expected, in percent")
+        .within(at_least(0))
+        .otherwise("none");
     s.key("at_least", &C::at_least, "lower bound, in the unit of the column").otherwise("none");
     s.key("at_most", &C::at_most, "upper bound, in the unit of the column").otherwise("none");
     s.key("variants", &C::variants, "names of the variants that are held to it").otherwise("all");
-    s.finish([](C& c, const Node&, const Place& place) {
-      if (!c.at_least && !c.at_most) place.complain("has no bound; give `at_least`, `at_most` or both");
-      if (c.at_least && c.at_most && *c.at_least > *c.at_most)
-        place.complain("`at_least` is above `at_most`; no value can be within them");
-    });
+    s.spec().exclusions = {{{{"expected"}, {"at_least", "at_most"}}, false},
+                           {{{"tolerance"}, {"tolerance_percent"}}, false}};
+    s.finish(complete_check);
     return s.spec();
   }();
   return section;
@@ -123,6 +156,9 @@ const SectionSpec& variant_section() {
         "a rigid vessel around the body");
     s.tables("capsule", capsule_section(), &Variant::capsules, "membranes on the surface");
     s.tables("probe", probe_section(), &Variant::probes, "places that are read with the forces");
+    s.table(
+        "heat", heat_section(), [](Variant & v) -> auto& { return v.heat.emplace(); },
+        "the body's temperature, in place of mechanics");
     s.table("output", output_section(), &Variant::output, "what is stored");
     for (const KeySpec& key : scene_section().keys) s.spec().other_words.push_back(key.name);
     s.finish([](Variant& v, const Node& table, const Place& place) {

@@ -46,6 +46,16 @@ const SectionSpec& container_section();          ///< fills ContainerSpec
 const SectionSpec& capsule_section();            ///< fills CapsuleSpec
 const SectionSpec& probe_section();              ///< fills ProbeSpec
 const SectionSpec& probe_plane_section();        ///< fills ProbePlane
+const SectionSpec& heat_section();               ///< fills HeatSpec
+const SectionSpec& heat_tissue_section();        ///< fills HeatTissueSpec
+const SectionSpec& tissue_death_section();       ///< fills TissueDeath
+const SectionSpec& heat_boundary_section();      ///< fills HeatBoundarySpec
+const SectionSpec& heat_probe_section();         ///< fills HeatProbeSpec
+const SectionSpec& heat_power_section();         ///< fills HeatPowerSpec
+const SectionSpec& heat_sensor_section();        ///< fills HeatSensorSpec
+const SectionSpec& heat_front_section();         ///< fills HeatFrontSpec
+const SectionSpec& heat_isotherm_section();      ///< fills HeatIsothermSpec
+const SectionSpec& heat_plane_section();         ///< fills HeatPlaneSpec
 const SectionSpec& output_section();             ///< fills OutputSpec
 const SectionSpec& measured_section();           ///< fills MeasuredSpec
 const SectionSpec& chart_section();              ///< fills ChartSpec
@@ -71,6 +81,8 @@ inline const SectionSpec& section_of(std::type_identity<TipResistance>) { return
 inline const SectionSpec& section_of(std::type_identity<InnerMembrane>) { return inner_membrane_section(); }
 inline const SectionSpec& section_of(std::type_identity<MembraneProcess>) { return membrane_process_section(); }
 inline const SectionSpec& section_of(std::type_identity<ShaftFriction>) { return shaft_friction_section(); }
+inline const SectionSpec& section_of(std::type_identity<TissueDeath>) { return tissue_death_section(); }
+inline const SectionSpec& section_of(std::type_identity<HeatPlaneSpec>) { return heat_plane_section(); }
 inline const SectionSpec& section_of(std::type_identity<StrokesSpec::One>) { return stroke_section(); }
 
 }  // namespace glisson::scene

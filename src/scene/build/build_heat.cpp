@@ -1,0 +1,265 @@
+// build_heat.cpp — from what [heat] of a variant says to its HeatSimulation, and what is read of it.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "base/nearest.h"
+#include "glisson/scene/heat_run.h"
+#include "scene/build/select.h"
+
+namespace glisson {
+namespace {
+
+using scene::region_number;
+
+[[noreturn]] void fail_heat(const Variant& variant, const std::string& origin, const std::string& what) {
+  throw SceneError((origin.empty() ? variant.scene_name : origin) + ": " + what);
+}
+
+/// Runs `make`, saying of what it throws where the scene asked for it.
+template <class Make>
+auto placed(const Variant& variant, const std::string& origin, Make make) {
+  try {
+    return make();
+  } catch (const std::invalid_argument& error) {
+    fail_heat(variant, origin, error.what());
+  }
+}
+
+const HeatSpec& heat_of(const Variant& variant) {
+  if (!variant.heat) fail_heat(variant, "", "the scene has no [heat]");
+  return *variant.heat;
+}
+
+std::string name_of_region(const TetMesh& mesh, int region) {
+  const auto name = mesh.region_names.find(region);
+  return name == mesh.region_names.end() || name->second.empty() ? std::to_string(region) : name->second;
+}
+
+std::string regions_text(const TetMesh& mesh) {
+  std::set<int> numbers;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) numbers.insert(mesh.region_of(t));
+  std::vector<std::string> names;
+  for (const int n : numbers) names.push_back(name_of_region(mesh, n));
+  return scene::listed(names);
+}
+
+/// The number of a region that has tets. @throws SceneError
+int region_with_tets(const Variant& variant, const std::string& origin, const TetMesh& mesh, const std::string& name) {
+  const int number = region_number(mesh, name);
+  for (std::size_t t = 0; number >= 0 && t < mesh.tets.size(); ++t) {
+    if (mesh.region_of(t) == number) return number;
+  }
+  fail_heat(variant, origin, "the body has no region \"" + name + "\"; it has: " + regions_text(mesh));
+}
+
+std::map<int, ThermalTissue> thermal_tissues(const Variant& variant, const TetMesh& mesh) {
+  std::map<int, ThermalTissue> tissues;
+  const HeatSpec& heat = heat_of(variant);
+  for (const HeatTissueSpec& x : heat.tissues) {
+    if (!x.region.empty()) tissues[region_with_tets(variant, x.origin, mesh, x.region)] = x.tissue;
+  }
+  const auto rest =
+      std::find_if(heat.tissues.begin(), heat.tissues.end(), [](const auto& x) { return x.region.empty(); });
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    const int region = mesh.region_of(t);
+    if (tissues.count(region) > 0) continue;
+    if (rest == heat.tissues.end()) {
+      fail_heat(
+          variant, heat.origin,
+          "region \"" + name_of_region(mesh, region) +
+              "\" has no thermal tissue; give a [[heat.tissue]] with that `region`, or one without for all the rest");
+    }
+    tissues[region] = rest->tissue;
+  }
+  return tissues;
+}
+
+HeatSimulation heat_simulation(const Variant& variant, TetMesh mesh) {
+  const std::map<int, ThermalTissue> tissues = thermal_tissues(variant, mesh);
+  return placed(variant, heat_of(variant).origin,
+                [&] { return HeatSimulation(std::move(mesh), tissues, variant.heat->options); });
+}
+
+/// A table where its values are given, else a constant; none where neither is.
+TimeFunction<double> course(const std::vector<double>& times, const std::vector<double>& values,
+                            const std::optional<double>& constant, int cycles) {
+  if (!values.empty()) return table_course(times, values, cycles);
+  return constant ? table_course({}, {*constant}) : TimeFunction<double>();
+}
+
+std::vector<std::uint32_t> vertices_of_region(const TetMesh& mesh, int region) {
+  std::set<std::uint32_t> vertices;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    if (mesh.region_of(t) == region) vertices.insert(mesh.tets[t].begin(), mesh.tets[t].end());
+  }
+  return {vertices.begin(), vertices.end()};
+}
+
+}  // namespace
+
+TimeFunction<double> table_course(std::vector<double> times, std::vector<double> values, int cycles) {
+  if (times.empty()) return [value = values.at(0)](double) { return value; };
+  const double period = times.back();
+  std::vector<double> corners;
+  for (int k = 0; k < cycles; ++k) {
+    for (const double t : times) corners.push_back(k * period + t);
+  }
+  const auto at = [times = std::move(times), values = std::move(values), period, cycles](double time) {
+    // of two entries of one time the first holds there: a step that ends at a jump is made by what was before it
+    double t = time;
+    if (cycles > 1 && period > 0.0) t -= period * std::clamp(std::ceil(time / period) - 1.0, 0.0, cycles - 1.0);
+    const auto next = static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), t) - times.begin());
+    if (next == 0) return values.front();
+    if (next == times.size()) return values.back();
+    return std::lerp(values[next - 1], values[next], (t - times[next - 1]) / (times[next] - times[next - 1]));
+  };
+  return {at, CornerTimes(std::move(corners))};
+}
+
+BuiltHeat::BuiltHeat(const Variant& variant, const MeshLoader& load) : BuiltHeat(build_mesh(variant, load), variant) {}
+
+BuiltHeat::BuiltHeat(TetMesh mesh, const Variant& variant) : simulation(heat_simulation(variant, std::move(mesh))) {
+  add_sources(variant);
+  add_sensors(variant);
+  add_volumes(variant);
+}
+
+void BuiltHeat::add_sources(const Variant& variant) {
+  const TetMesh& mesh = simulation.mesh();
+  for (const HeatBoundarySpec& x : heat_of(variant).boundaries) {
+    placed(variant, x.origin, [&] {
+      const auto temperature = course(x.times, x.temperatures, x.temperature, x.cycles);
+      if (!x.region.empty())
+        simulation.hold(vertices_of_region(mesh, region_with_tets(variant, x.origin, mesh, x.region)), temperature);
+      else if (x.coefficient)
+        simulation.add_convection(x.set, *x.coefficient, temperature);
+      else if (temperature)
+        simulation.hold(x.set, temperature);
+      else
+        simulation.add_flux(x.set, course(x.times, x.fluxes, x.flux, x.cycles));
+    });
+  }
+  for (const HeatProbeSpec& x : heat_of(variant).probes) {
+    placed(variant, x.origin, [&] {
+      const Vec3d way = x.to - x.from;
+      LineSource line{.from = x.from, .to = x.active_length ? x.from + unit(way) * *x.active_length : x.to};
+      line.radius = x.radius;
+      line.power_per_length = course(x.times, x.powers, x.power, x.cycles);
+      line.temperature = course(x.times, x.temperatures, x.temperature, x.cycles);
+      line.coefficient = course(x.times, x.coefficients, x.coefficient, x.cycles);
+      try {
+        simulation.add_line_source(line);
+      } catch (const std::invalid_argument& error) {
+        throw std::invalid_argument("probe \"" + x.name + "\": " + error.what() + "; the body spans " +
+                                    scene::extent_text(mesh));
+      }
+    });
+  }
+  for (const HeatPowerSpec& x : heat_of(variant).powers) {
+    std::set<int> regions;
+    if (!x.region.empty()) regions.insert(region_with_tets(variant, x.origin, mesh, x.region));
+    for (std::size_t t = 0; x.region.empty() && t < mesh.tets.size(); ++t) regions.insert(mesh.region_of(t));
+    for (const int region : regions) simulation.add_source(region, course(x.times, x.powers, x.power, x.cycles));
+  }
+}
+
+void BuiltHeat::add_sensors(const Variant& variant) {
+  const TetMesh& mesh = simulation.mesh();
+  std::vector<Vec3d> points;
+  for (const HeatSensorSpec& x : heat_of(variant).sensors) {
+    const int count = x.from ? x.count : x.region.empty() ? 1 : 0;
+    for (int k = 0; k < count; ++k) {
+      const Vec3d at = x.from ? *x.from + (*x.to - *x.from) * (static_cast<double>(k) / (count - 1)) : *x.point;
+      placed(variant, x.origin, [&] { return HeatPoints(mesh, std::span(&at, 1)); });
+      points.push_back(at);
+      temperature_columns_.push_back(x.name + (x.from ? "_" + std::to_string(k + 1) : "") + "_C");
+      is_mean_.push_back(0);
+    }
+    if (x.region.empty()) continue;
+    const int region = region_with_tets(variant, x.origin, mesh, x.region);
+    std::map<std::uint32_t, double> weights;
+    double whole = 0.0;
+    for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+      if (mesh.region_of(t) != region) continue;
+      whole += six_rest_volume(mesh, t);
+      for (const std::uint32_t v : mesh.tets[t]) weights[v] += 0.25 * six_rest_volume(mesh, t);
+    }
+    for (auto& [v, weight] : weights) weight /= whole;
+    means_.push_back({{weights.begin(), weights.end()}});
+    temperature_columns_.push_back(x.name + "_C");
+    is_mean_.push_back(1);
+  }
+  points_ = HeatPoints(mesh, points);
+}
+
+void BuiltHeat::add_volumes(const Variant& variant) {
+  const TetMesh& mesh = simulation.mesh();
+  const auto column = [&](const std::string& name) { heat_columns_.push_back(name); };
+  for (const char* name : {"lowest_C", "highest_C", "frozen_m3", "dead_m3"}) column(name);
+  for (const HeatTissueSpec& x : heat_of(variant).tissues) {
+    if (x.region.empty()) continue;
+    regions_.push_back(region_number(mesh, x.region));
+    column("frozen_" + x.region + "_m3"), column("dead_" + x.region + "_m3");
+  }
+  for (const HeatFrontSpec& x : heat_of(variant).fronts) {
+    fronts_.push_back(
+        {placed(variant, x.origin, [&] { return HeatLine(mesh, x.from, x.to); }), x.temperature, x.above});
+    column(x.name + "_m");
+  }
+  for (const HeatIsothermSpec& x : heat_of(variant).isotherms) {
+    Isotherm isotherm{.temperature = x.temperature, .region = {}, .plane = {}};
+    if (!x.region.empty()) isotherm.region = region_with_tets(variant, x.origin, mesh, x.region);
+    if (x.plane)
+      isotherm.plane = placed(variant, x.origin, [&] { return HeatPlane(mesh, x.plane->point, x.plane->normal); });
+    isotherms_.push_back(std::move(isotherm));
+    for (const char* what : {"_volume_m3", "_extent_x_m", "_extent_y_m", "_extent_z_m"}) column(x.name + what);
+    if (x.plane) column(x.name + "_area_m2"), column(x.name + "_width_m");
+  }
+  for (const char* name :
+       {"stored_J", "held_J", "surface_J", "blood_J", "metabolism_J", "sources_J", "imbalance_J", "limited_share"})
+    column(name);
+}
+
+HeatSample BuiltHeat::read() const {
+  const std::span<const double> t = simulation.temperature();
+  HeatSample sample{.temperatures = {simulation.time()}, .heat = {simulation.time()}};
+  const std::vector<double> points = points_.read(t);
+  auto point = points.begin();
+  auto mean = means_.begin();
+  for (const char is_mean : is_mean_) {
+    double value = 0.0;
+    if (is_mean == 0)
+      value = *point++;
+    else
+      for (const auto& [v, weight] : (mean++)->weights) value += weight * t[v];
+    sample.temperatures.push_back(value);
+  }
+  std::vector<double>& row = sample.heat;
+  const auto [low, high] = std::minmax_element(t.begin(), t.end());
+  row.insert(row.end(), {*low, *high, simulation.frozen_volume(), simulation.dead_volume()});
+  for (const int region : regions_)
+    row.insert(row.end(), {simulation.frozen_volume(region), simulation.dead_volume(region)});
+  const std::vector<double> frozen = fronts_.empty() ? std::vector<double>() : simulation.frozen_share();
+  for (const Front& x : fronts_) {
+    const double colder = x.temperature ? x.line.length_below(t, *x.temperature) : x.line.integral(frozen);
+    row.push_back(x.above ? colder - x.line.length_below(t, *x.above) : colder);
+  }
+  for (const Isotherm& x : isotherms_) {
+    const IsothermExtent extent = isotherm_extent(simulation.mesh(), t, x.temperature);
+    const Vec3d size = extent.high - extent.low;
+    row.push_back(x.region ? simulation.volume_below(x.temperature, x.region) : extent.volume);
+    row.insert(row.end(), {size.x, size.y, size.z});
+    if (!x.plane) continue;
+    const HeatPlane::Section section = x.plane->below(t, x.temperature);
+    row.insert(row.end(), {section.area, section.width});
+  }
+  const HeatLedger l = simulation.ledger();
+  row.insert(row.end(), {l.stored, l.held, l.surface, l.blood, l.metabolism, l.sources, l.imbalance(),
+                         simulation.state().limited_share});
+  return sample;
+}
+
+}  // namespace glisson
