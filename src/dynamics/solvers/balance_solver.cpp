@@ -15,6 +15,7 @@ constexpr int kMostHalvings = 12;      ///< of a line search
 constexpr double kLeeway = 2.0;        ///< so much farther from balance an iteration with contact may lead …
 constexpr double kLeastShare = 0.02;   ///< … and this share of it is taken where all lead too far
 constexpr double kSlow = 0.35;  ///< of the residual: what an iteration with contact leaves where the factor is bad
+constexpr double kQuick = 0.1;  ///< … and where the tangent is still good enough
 constexpr double kDifference = 1e-3;  ///< of h, for the velocity of a motion
 
 std::span<const Vec3d> view(const std::vector<Vec3d>& field) { return field; }
@@ -65,7 +66,8 @@ bool BalanceSolver::solve(const TimeStep& s, std::span<const Vec3d> last_change,
   watch_before_ = watch_;
   prescribe(s);
   if (contact_.acts() && contact_.begin(s.h, now_.u, !relaxes_ && contact_.constrains())) hold();
-  const bool found = start(s, last_change, last_h) && (contact_.constrains() ? newton_in_contact(s) : newton(s));
+  const std::optional<Balance> first = start(s, last_change, last_h);
+  const bool found = first && (contact_.constrains() ? newton_in_contact(s, *first) : newton(s, *first));
   if (found && !interrupt_.is_wanted()) {
     if (contact_.acts()) next_.contact = contact_.forces();
     return true;
@@ -167,7 +169,7 @@ BalanceSolver::Balance BalanceSolver::evaluate(const TimeStep& s) {
   return b;
 }
 
-void BalanceSolver::linearise(const TimeStep& s, bool semidefinite) {
+void BalanceSolver::linearise(const TimeStep& s, bool semidefinite, bool anew) {
   for (std::size_t i = 0; i < diagonal_.size(); ++i) {
     const Vec3d damping = state_.damping(i, statics_), spring = state_.loads.spring(i);
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -179,12 +181,14 @@ void BalanceSolver::linearise(const TimeStep& s, bool semidefinite) {
   system_.linearise(
       {at_u_, at_v_, since(s)},
       {s.v_rate, 1.0 - s.alpha_f, diagonal_, state_.loads.stiffness(time, state_.body, at_u_), contact_.stiffness()},
-      semidefinite);
+      semidefinite, anew);
 }
 
 /// A first u⁺: the motion goes on as it was. Where that turns tets inside out, from where the body is, with the change
 /// of what is driven spread over the body by the tangent there.
-bool BalanceSolver::start(const TimeStep& s, std::span<const Vec3d> last_change, double last_h) {
+/// @return how far from balance it is; none where nothing finite is found
+std::optional<BalanceSolver::Balance> BalanceSolver::start(const TimeStep& s, std::span<const Vec3d> last_change,
+                                                           double last_h) {
   const std::size_t inverted = watch_.inverted.size();
   const double scale = last_h > 0.0 ? s.h / last_h : 0.0;
   for (std::size_t i = 0; i < next_.u.size(); ++i) {
@@ -194,9 +198,9 @@ bool BalanceSolver::start(const TimeStep& s, std::span<const Vec3d> last_change,
     }
   }
   const Balance there = evaluate(s);
-  if (std::isfinite(there.residual) && watch_.inverted.size() <= inverted) return true;
+  if (std::isfinite(there.residual) && watch_.inverted.size() <= inverted) return there;
   next_.u = now_.u;
-  if (!std::isfinite(evaluate(s).residual)) return false;
+  if (!std::isfinite(evaluate(s).residual)) return {};
   linearise(s, false);
   std::vector<Vec3d> spread(change_.size());
   system_.apply(change_, spread);
@@ -206,7 +210,7 @@ bool BalanceSolver::start(const TimeStep& s, std::span<const Vec3d> last_change,
   }
   system_.solve(load, kForcing, d);
   flat(std::span<Vec3d>(next_.u)) += d + flat(view(change_));
-  return d.allFinite();
+  return d.allFinite() ? std::optional(evaluate(s)) : std::nullopt;
 }
 
 /// Goes along the direction as far as it leads towards balance.
@@ -256,9 +260,8 @@ bool BalanceSolver::go_towards(const TimeStep& s, const std::vector<Vec3d>& from
 
 /// Newton's method on equilibrium and contact together: an iteration with the forces of contact as they are, then these anew at
 /// where it leads. At the end both hold for one state.
-bool BalanceSolver::newton_in_contact(const TimeStep& s) {
+bool BalanceSolver::newton_in_contact(const TimeStep& s, Balance balance) {
   const ImplicitOptions& options = state_.options.implicit;
-  Balance balance = evaluate(s);
   bool semidefinite = false;
   double mark = std::numeric_limits<double>::infinity(), last = mark;
   int deadline = options.most_iterations;
@@ -266,7 +269,7 @@ bool BalanceSolver::newton_in_contact(const TimeStep& s) {
   for (iterations_ = 0; iterations_ < deadline; ++iterations_) {
     interrupt_.set_iteration(iterations_);
     if (!std::isfinite(balance.residual) || interrupt_.wanted()) return false;
-    linearise(s, semidefinite);
+    linearise(s, semidefinite, iterations_ == 0 || semidefinite || balance.residual > kQuick * last);
     if (iterations_ > 1 && balance.residual > kSlow * last && !system_.is_linear()) system_.renew();
     const double exact = std::max(1e-12, 0.1 * options.tolerance * balance.scale / balance.residual);
     const double accuracy = system_.is_linear() ? exact : std::max(exact, kForcing);
@@ -292,9 +295,8 @@ bool BalanceSolver::newton_in_contact(const TimeStep& s) {
   return false;
 }
 
-bool BalanceSolver::newton(const TimeStep& s) {
+bool BalanceSolver::newton(const TimeStep& s, Balance balance) {
   const ImplicitOptions& options = state_.options.implicit;
-  Balance balance = evaluate(s);
   bool semidefinite = false;
   int patience = 0, wait = 0;      // iterations with definite tangents before the exact one is tried again
   double mark = balance.residual;  // to be halved within so many iterations

@@ -7,6 +7,7 @@
 //   └ no balance: nothing has changed                         ┘
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -81,12 +82,12 @@ class BalanceSolver {
   Balance evaluate(const TimeStep& s);
   void try_at(const TimeStep& s);
   void load(const TimeStep& s);
-  bool start(const TimeStep& s, std::span<const Vec3d> last_change, double last_h);
-  bool newton(const TimeStep& s);
-  bool newton_in_contact(const TimeStep& s);
+  std::optional<Balance> start(const TimeStep& s, std::span<const Vec3d> last_change, double last_h);
+  bool newton(const TimeStep& s, Balance balance);
+  bool newton_in_contact(const TimeStep& s, Balance balance);
   bool go_towards(const TimeStep& s, const std::vector<Vec3d>& from, const ExertedForces& forces, bool first,
                   Balance& balance);
-  void linearise(const TimeStep& s, bool semidefinite);
+  void linearise(const TimeStep& s, bool semidefinite, bool anew = true);
   bool search_line(const TimeStep& s, const Eigen::VectorXd& direction, Balance& balance);
 
   BodyState& state_;

@@ -454,6 +454,17 @@ void StepContact::settle(std::span<ActiveVertex> vertices) {
   }
 }
 
+void StepContact::add_between(std::size_t place, std::size_t by, double share, Mat3d& sum) {
+  const Column& c = column_at(by);
+  const double scale = share / (h_ * h_);
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index j = 0; j < 3; ++j) {
+      sum(static_cast<std::size_t>(i), static_cast<std::size_t>(j)) +=
+          c(3 * static_cast<Eigen::Index>(place) + i, j) * scale;
+    }
+  }
+}
+
 Vec3d StepContact::mobility(std::size_t place) {
   const Eigen::Matrix3d own = column_at(place).middleRows<3>(static_cast<Eigen::Index>(3 * place));
   const double most = own.cwiseAbs().rowwise().sum().maxCoeff() / (h_ * h_);  // no eigenvalue is above it

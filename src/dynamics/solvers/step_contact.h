@@ -100,6 +100,7 @@ class StepContact final : public StepCompliance {
 
   void spread(std::size_t place, const Vec3d& impulse, std::span<ActiveVertex> vertices) override;
   void settle(std::span<ActiveVertex> vertices) override;
+  void add_between(std::size_t place, std::size_t by, double share, Mat3d& sum) override;
   Vec3d mobility(std::size_t place) override;
   std::vector<Mat3d> couple(std::span<const std::vector<VertexWeight>> means) override;
   void spread_means(std::span<const std::vector<VertexWeight>> means, std::span<const Vec3d> impulses,

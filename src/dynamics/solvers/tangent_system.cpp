@@ -80,8 +80,8 @@ void TangentSystem::set_free(std::vector<char> free) {
   known_ = has_pattern_ = has_factor_ = current_ = false;
 }
 
-void TangentSystem::linearise(const TissueState& state, const Terms& terms, bool semidefinite) {
-  const bool same = linear_ && terms.rate == terms_.rate && state.since == state_.since;
+void TangentSystem::linearise(const TissueState& state, const Terms& terms, bool semidefinite, bool anew) {
+  const bool same = (linear_ || !anew) && terms.rate == terms_.rate && state.since == state_.since;
   current_ = current_ && same && terms.weight == terms_.weight && terms.triangles.empty() && triangles_.empty() &&
              std::equal(diagonal_.begin(), diagonal_.end(), terms.diagonal.begin(), terms.diagonal.end());
   diagonal_.assign(terms.diagonal.begin(), terms.diagonal.end());

@@ -60,7 +60,8 @@ class TangentSystem final : public StepFactor {
 
   /// Takes A at a state.
   /// @param semidefinite  as TissueOperator::linearise
-  void linearise(const TissueState& state, const Terms& terms, bool semidefinite);
+  /// @param anew  false: the tissue's part may stay that of an earlier state of the step
+  void linearise(const TissueState& state, const Terms& terms, bool semidefinite, bool anew = true);
   /// Read after set_free, with the same components as when it was written.
   void archive(Archive& ar);
   /// The factor, shared, and goes back to one after archive() of a copy in memory; none: there was no factor.
