@@ -15,7 +15,8 @@ constexpr int kMostSweeps = 60;
 constexpr int kMostSweepsBetween = 45;  // with triangles, whose points are looked for up to three times
 // Friction from which on two walls at right angles can hold a point by pressing and pulling it.
 constexpr double kJams = 1.0;
-constexpr int kTogether = 5;        // sweeps of a long step, after which all rows are solved for together
+// Sweeps of a long step, after which all rows are solved for together; twice as many after each time in vain.
+constexpr int kTogether = 5;
 constexpr char kMostReleases = 3;   // of a row: a corner in which it is let go and wanted again in turn needs both
 constexpr double kEnough = 1000.0;  // tolerances: rows that move by less have been solved
 constexpr int kMostCorrections = 8;
@@ -380,7 +381,7 @@ int solve_long(std::span<ContactRow> rows, const InteractionStep& step) {
   // far as they happen to. In a short step the first one's impulse leaves the other nothing to do.
   std::vector<std::size_t> holder(step.vertices.size(), rows.size());
   std::vector<char> releases(rows.size(), 0);
-  int sweep = 1;
+  int sweep = 1, wait = kTogether, together = wait;
   for (;; ++sweep) {
     double change = 0.0;
     for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -398,7 +399,9 @@ int solve_long(std::span<ContactRow> rows, const InteractionStep& step) {
       if (vertex && !spare) holder[row.places[0]] = sticks(row) ? k : rows.size();
     }
     if (change <= enough || sweep == kMostLongSweeps) break;
-    if (sweep % kTogether == 0) all.solve_together(gap_of);
+    if (sweep < together) continue;
+    if (!all.solve_together(gap_of)) wait *= 2;
+    together = sweep + wait;
   }
   all.finish();
   return sweep;

@@ -172,9 +172,9 @@ void LongRows::take(const Eigen::VectorXd& change) {
   }
 }
 
-void LongRows::solve_together(const GapOf& gap) {
+bool LongRows::solve_together(const GapOf& gap) {
   const std::size_t n = rows_.size();
-  if (n > kMostTogether || !std::ranges::all_of(rows_, moves_freely)) return;
+  if (n > kMostTogether || !std::ranges::all_of(rows_, moves_freely)) return false;
   std::vector<ShapeDistance> gaps(n);
   const auto look = [&] {
     for (std::size_t k = 0; k < n; ++k) gaps[k] = gap(rows_[k], end(k));
@@ -191,10 +191,11 @@ void LongRows::solve_together(const GapOf& gap) {
       take(change);
       lack = look();
     }
-    if (lack.norm() < kBetter * first) return;
+    if (lack.norm() < kBetter * first) return true;
     for (std::size_t k = 0; k < n; ++k) rows_[k].pressing = before[k].pressing, rows_[k].rubbing = before[k].rubbing;
     v_ = v;
   }
+  return false;
 }
 
 }  // namespace glisson

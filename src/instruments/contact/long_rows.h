@@ -34,13 +34,14 @@ class LongRows {
   void push(std::size_t k, const Vec3d& impulse);
   /// φ of a row's point at the end, less what the row asks for [m], and its gradient, in the frame of the solid.
   using GapOf = ShapeDistance (*)(const ContactRow& row, const Vec3d& end);
-  /// Newton's method on all rows, up to 150 of them, where nothing holds their points: it costs as the cube of their number.
-  void solve_together(const GapOf& gap);
+  /// Newton's method on all rows, up to 80 of them, where nothing holds their points: it costs as the cube of their number.
+  /// @return whether it has led nearer to the answer
+  bool solve_together(const GapOf& gap);
   /// Gives the vertices what rows exert now more than at first.
   void finish();
 
  private:
-  static constexpr std::size_t kMostTogether = 150;
+  static constexpr std::size_t kMostTogether = 80;
   static Eigen::Index at(std::size_t k) { return static_cast<Eigen::Index>(3 * k); }
   Eigen::VectorXd lacks(std::span<const ShapeDistance> gaps) const;
   Eigen::VectorXd newton(std::span<const ShapeDistance> gaps, const Eigen::VectorXd& lack, double damping) const;
