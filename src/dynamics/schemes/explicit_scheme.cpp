@@ -298,7 +298,7 @@ void ExplicitScheme::act_on_only(std::span<const std::uint32_t> vertices) {
 }
 
 void ExplicitScheme::archive_motion(Archive& ar) {
-  drag_->body_changed();
+  if (ar.reads()) drag_->body_changed();
   std::vector<std::uint32_t> active = active_vertices();
   ar.all_below(active, state_.body.vertex_count);
   ar.all_below(held_, state_.body.vertex_count);
@@ -306,7 +306,7 @@ void ExplicitScheme::archive_motion(Archive& ar) {
   if (ar.reads()) act_on_only(active);
   ar.check(moving_->active().size() == active.size());
   moving_->archive_state(ar, state_.body.vertex_count);
-  copy_is_current_ = false;
+  if (ar.reads()) copy_is_current_ = false;
   for (ActiveVertex& w : moving_->active()) ar(w.elastic, w.viscous);
   ar.same_size(stiffening_);
   ar(kick_, stiff_, ledger_);

@@ -405,7 +405,7 @@ void ImplicitScheme::archive_motion(Archive& ar) {
   if (ar.reads() && !fresh) solver_.begin();
   if (!fresh) ar(solver_);
   if (is_slow()) ar(pace_.largest_stress, pace_.largest_displacement, pace_.planned);
-  fresh_ = fresh;
+  if (ar.reads()) fresh_ = fresh;
 }
 
 /// What holds or drives a vertex, in the components it holds.
