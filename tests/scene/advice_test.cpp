@@ -334,7 +334,7 @@ TEST(Advice, OfAVariantAtRestBuildsNone) {
   const auto in_words = [](const std::vector<Advice>& advice, bool all) {
     std::vector<std::string> list;
     for (const Advice& one : advice) {
-      if (all || (one.rule != "limits" && one.rule != "stages")) list.push_back(one.rule + ": " + one.text);
+      if (all || (one.rule != "limits" && one.rule != "viscous")) list.push_back(one.rule + ": " + one.text);
     }
     return list;
   };
@@ -347,7 +347,7 @@ TEST(Advice, OfAVariantAtRestBuildsNone) {
     said += at_rest.size(), left_out += trying.size() - at_rest.size();
   }
   EXPECT_GE(said, 1u);
-  EXPECT_GE(left_out, 2u) << "limits of the first, stages of the second";
+  EXPECT_GE(left_out, 2u) << "limits of the first, viscosity of the second";
 }
 
 }  // namespace advice_test

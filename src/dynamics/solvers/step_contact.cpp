@@ -187,12 +187,12 @@ void StepContact::take_off(std::size_t interaction) {
   settle(active_);
 }
 
-/// Looks at the work that has been done. @param tries_again  that of a trial after which another follows  @param trial  its number
+/// Looks at the work that has been done. @param trial  number of the last
 /// @return whether there may be more
-bool StepContact::count_work(bool tries_again, int trial) {
+bool StepContact::count_work(int trial) {
   const auto places = static_cast<double>(std::max<std::size_t>(near_.size(), 1));
   const bool interrupted = interrupt_ != nullptr && interrupt_->wanted();
-  const bool lost = tries_again && trial == kMostTrials && is_last_;
+  const bool lost = trial == kMostTrials && is_last_;
   exhausted_ = interrupted || lost || pushes_ > most_sweeps_ * places;
   return !exhausted_ && trial < kMostTrials;
 }
@@ -207,7 +207,7 @@ double StepContact::find_forces_of(std::size_t interaction) {
   interactions_.constrain(interaction, *this);
   for (int trial = 1;; ++trial) {
     const bool again = interactions_.all()[interaction]->tries_again();
-    if (!count_work(again, trial) || !again) break;
+    if (!count_work(trial) || !again) break;
     active_ = free;
     unsettled_.assign(active_.size(), Vec3d{});
     interactions_.go_back(others);

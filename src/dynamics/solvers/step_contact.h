@@ -138,7 +138,7 @@ class StepContact final : public StepCompliance {
   std::array<double, 3> lost_by(double InterfaceBook::Page::*tools, const Velocity& velocity) const;
   double find_forces();
   double find_forces_of(std::size_t interaction);
-  bool count_work(bool tries_again, int trial);
+  bool count_work(int trial);
   void take_off(std::size_t interaction);
   void move_by_change(std::span<Vec3d> u, const ExertedForces& known, std::span<Eigen::VectorXd> moved);
   const Eigen::VectorXd& response(std::size_t interaction, const std::vector<Vec3d>& forces);
