@@ -100,8 +100,6 @@ class StepCompliance {
   /// computed, at the others in the next settle().
   virtual void spread(std::size_t place, const Vec3d& impulse, std::span<ActiveVertex> vertices) = 0;
   virtual void settle(std::span<ActiveVertex> vertices) = 0;
-  /// Adds a share of the velocity of the vertex at a place per impulse at another one [1/kg], row by row.
-  virtual void add_between(std::size_t place, std::size_t by, double share, Mat3d& sum) = 0;
   /// Upper bound of a place's velocity per impulse on it: the same in all free components, 0 in the others [1/kg].
   virtual Vec3d mobility(std::size_t place) = 0;
   /// Velocities of means of active vertices per unit impulse on each of them along each axis: that of mean j by mean k at

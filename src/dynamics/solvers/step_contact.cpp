@@ -187,12 +187,12 @@ void StepContact::take_off(std::size_t interaction) {
   settle(active_);
 }
 
-/// Looks at the work that has been done. @param trial  number of the last
+/// Looks at the work that has been done. @param tries_again  that of a trial after which another follows  @param trial  its number
 /// @return whether there may be more
-bool StepContact::count_work(int trial) {
+bool StepContact::count_work(bool tries_again, int trial) {
   const auto places = static_cast<double>(std::max<std::size_t>(near_.size(), 1));
   const bool interrupted = interrupt_ != nullptr && interrupt_->wanted();
-  const bool lost = trial == kMostTrials && is_last_;
+  const bool lost = tries_again && trial == kMostTrials && is_last_;
   exhausted_ = interrupted || lost || pushes_ > most_sweeps_ * places;
   return !exhausted_ && trial < kMostTrials;
 }
@@ -207,7 +207,7 @@ double StepContact::find_forces_of(std::size_t interaction) {
   interactions_.constrain(interaction, *this);
   for (int trial = 1;; ++trial) {
     const bool again = interactions_.all()[interaction]->tries_again();
-    if (!count_work(trial) || !again) break;
+    if (!count_work(again, trial) || !again) break;
     active_ = free;
     unsettled_.assign(active_.size(), Vec3d{});
     interactions_.go_back(others);
@@ -451,17 +451,6 @@ void StepContact::settle(std::span<ActiveVertex> vertices) {
     if (unsettled_[by] == Vec3d{}) continue;
     for (const std::uint32_t k : far_) move(by, unsettled_[by], k, vertices[k]);
     unsettled_[by] = {};
-  }
-}
-
-void StepContact::add_between(std::size_t place, std::size_t by, double share, Mat3d& sum) {
-  const Column& c = column_at(by);
-  const double scale = share / (h_ * h_);
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    for (Eigen::Index j = 0; j < 3; ++j) {
-      sum(static_cast<std::size_t>(i), static_cast<std::size_t>(j)) +=
-          c(3 * static_cast<Eigen::Index>(place) + i, j) * scale;
-    }
   }
 }
 

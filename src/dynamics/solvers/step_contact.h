@@ -100,7 +100,6 @@ class StepContact final : public StepCompliance {
 
   void spread(std::size_t place, const Vec3d& impulse, std::span<ActiveVertex> vertices) override;
   void settle(std::span<ActiveVertex> vertices) override;
-  void add_between(std::size_t place, std::size_t by, double share, Mat3d& sum) override;
   Vec3d mobility(std::size_t place) override;
   std::vector<Mat3d> couple(std::span<const std::vector<VertexWeight>> means) override;
   void spread_means(std::span<const std::vector<VertexWeight>> means, std::span<const Vec3d> impulses,
@@ -138,7 +137,7 @@ class StepContact final : public StepCompliance {
   std::array<double, 3> lost_by(double InterfaceBook::Page::*tools, const Velocity& velocity) const;
   double find_forces();
   double find_forces_of(std::size_t interaction);
-  bool count_work(int trial);
+  bool count_work(bool tries_again, int trial);
   void take_off(std::size_t interaction);
   void move_by_change(std::span<Vec3d> u, const ExertedForces& known, std::span<Eigen::VectorXd> moved);
   const Eigen::VectorXd& response(std::size_t interaction, const std::vector<Vec3d>& forces);

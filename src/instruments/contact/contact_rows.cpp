@@ -3,10 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
-
-#include "instruments/contact/long_rows.h"
 
 namespace glisson {
 namespace {
@@ -15,8 +12,6 @@ constexpr int kMostSweeps = 60;
 constexpr int kMostSweepsBetween = 45;  // with triangles, whose points are looked for up to three times
 // Friction from which on two walls at right angles can hold a point by pressing and pulling it.
 constexpr double kJams = 1.0;
-// Sweeps of a long step, after which all rows are solved for together; twice as many after each time in vain.
-constexpr int kTogether = 5;
 constexpr char kMostReleases = 3;   // of a row: a corner in which it is let go and wanted again in turn needs both
 constexpr double kEnough = 1000.0;  // tolerances: rows that move by less have been solved
 constexpr int kMostCorrections = 8;
@@ -147,20 +142,6 @@ Vec3d sticking(const ContactRow& row, const Vec3d& slip) {
   return r;
 }
 
-/// Rows in a short step, where a vertex is moved by what pushes it alone.
-class ShortRows {
- public:
-  ShortRows(std::span<const ContactRow> rows, const InteractionStep& step) : rows_(rows), step_(step) {}
-  double h() const { return step_.h; }
-  Vec3d end(std::size_t k) const { return end_of(rows_[k], step_); }
-  Vec3d own(std::size_t k, const Vec3d& impulse) const { return scaled(rows_[k].response, impulse); }
-  void push(std::size_t k, const Vec3d& impulse) { glisson::push(rows_[k], step_, impulse); }
-
- private:
-  std::span<const ContactRow> rows_;
-  const InteractionStep& step_;
-};
-
 /// Speed of the point along the normal against the solid [m/s]; the solid's is that of its own point where the row's starts.
 double speed_off(const ContactRow& row, const InteractionStep& step) {
   Vec3d v;
@@ -168,42 +149,39 @@ double speed_off(const ContactRow& row, const InteractionStep& step) {
   return dot(row.normal, v - row.carried);
 }
 
-/// @param all  ShortRows or LongRows, of which the row is the k-th
 /// @return by how much the point was moved [m]
-template <class Rows>
-double rub(ContactRow& row, std::size_t k, Rows& all) {
+double rub(ContactRow& row, const InteractionStep& step) {
   const double limit = row.pressing > 0.0 ? row.solid->friction * row.pressing : 0.0;
   if (limit == 0.0 && row.rubbing == Vec3d{}) return 0.0;
-  const Vec3d drift = row.solid->after.axes * (all.end(k) - row.start) * (1.0 / all.h());
+  const Vec3d drift = row.solid->after.axes * (end_of(row, step) - row.start) * (1.0 / step.h);
   const Vec3d undone = drift - scaled(row.response, row.rubbing);
   Vec3d wanted = sticking(row, undone - row.normal * dot(undone, row.normal));
   const double size = norm(wanted);
   if (size > limit) wanted *= limit / size;
   const Vec3d change = wanted - row.rubbing;
   row.rubbing = wanted;
-  all.push(k, change);
-  return norm(scaled(row.response, change)) * all.h();
+  push(row, step, change);
+  return norm(scaled(row.response, change)) * step.h;
 }
 
-/// @param most  impulse that the row may have [N s]
-template <class Rows>
-double press(ContactRow& row, std::size_t k, Rows& all, double most) {
-  const Vec3d way = transposed(row.solid->after.axes) * all.own(k, row.normal) * all.h();
-  const double per_impulse = row.along * all.h();
-  const double wanted = std::min(most, needed(row, all.end(k) - way * row.pressing, way, per_impulse));
+double press(ContactRow& row, const InteractionStep& step) {
+  const Vec3d way = transposed(row.solid->after.axes) * scaled(row.response, row.normal) * step.h;
+  const double per_impulse = row.along * step.h;
+  double wanted = needed(row, end_of(row, step) - way * row.pressing, way, per_impulse);
+  if (row.most) wanted = std::min(wanted, std::max(0.0, row.pressing + (*row.most - speed_off(row, step)) / row.along));
   const double change = wanted - row.pressing;
   row.pressing = wanted;
-  if (change != 0.0) all.push(k, row.normal * change);
+  if (change != 0.0) push(row, step, row.normal * change);
   return std::abs(change) * per_impulse;
 }
 
 /// Takes a bonded point to where it is held. @return by how much it was moved [m]
-double hold(ContactRow& row, std::size_t k, LongRows& all) {
-  const Vec3d off = row.solid->after.axes * (row.face - all.end(k)) * (1.0 / all.h()), &w = row.response;
+double hold(ContactRow& row, const InteractionStep& step) {
+  const Vec3d off = row.solid->after.axes * (row.face - end_of(row, step)) * (1.0 / step.h), &w = row.response;
   const Vec3d change{w.x > 0.0 ? off.x / w.x : 0.0, w.y > 0.0 ? off.y / w.y : 0.0, w.z > 0.0 ? off.z / w.z : 0.0};
   row.take(row.impulse() + change);
-  all.push(k, change);
-  return norm(scaled(w, change)) * all.h();
+  push(row, step, change);
+  return norm(scaled(w, change)) * step.h;
 }
 
 /// Whether friction holds the point with something to spare.
@@ -213,12 +191,12 @@ bool sticks(const ContactRow& row) {
 }
 
 /// Takes off what the row exerts. @return by how much the point was moved [m]
-double release(ContactRow& row, std::size_t k, LongRows& all) {
+double release(ContactRow& row, const InteractionStep& step) {
   const Vec3d impulse = row.impulse();
   if (impulse == Vec3d{}) return 0.0;
-  all.push(k, -impulse);
+  push(row, step, -impulse);
   row.pressing = 0.0, row.rubbing = {};
-  return norm(scaled(row.response, impulse)) * all.h();
+  return norm(scaled(row.response, impulse)) * step.h;
 }
 
 /// The point of a triangle nearest to the centre of a ball: by the regions of corners, edges and face.
@@ -327,34 +305,37 @@ void prepare_bond(ContactRow& row, const Vec3d& anchor, const InteractionStep& s
   row.response = response_of(row, step);
 }
 
-namespace {
-
-/// Movement of a point at which rows have been solved [m].
-double enough_for(std::span<const ContactRow> rows) {
+int solve(std::span<ContactRow> rows, const InteractionStep& step) {
   double enough = 0.0;
   for (const ContactRow& row : rows) enough = std::max(enough, kEnough * row.solid->tolerance());
-  return enough;
-}
-
-int solve_short(std::span<ContactRow> rows, const InteractionStep& step) {
-  const double enough = enough_for(rows);
-  ShortRows all(rows, step);
   // a row whose vertices no other row has pushed since it was solved is solved still
   std::uint32_t clock = 1;
   std::vector<std::uint32_t> pushed(step.vertices.size(), clock), seen(rows.size(), 0);
+  const bool is_long = step.compliance != nullptr;
   const bool between = !rows.empty() && rows.back().count == 3;  // triangles come last
-  const int most = between ? kMostSweepsBetween : kMostSweeps;
+  const int most = is_long ? kMostLongSweeps : between ? kMostSweepsBetween : kMostSweeps;
+  // A vertex in a corner that sticks to one wall needs nothing of another: they could only press and pull it against each other, as
+  // far as they happen to. In a short step the first one's impulse leaves the other nothing to do.
+  std::vector<std::size_t> holder(is_long ? step.vertices.size() : 0, rows.size());
+  std::vector<char> releases(is_long ? rows.size() : 0, 0);
   for (int sweep = 1; sweep <= most; ++sweep) {
     double change = 0.0;
     for (std::size_t k = 0; k < rows.size(); ++k) {
       ContactRow& row = rows[k];
       std::uint32_t latest = 0;
       for (std::uint32_t i = 0; i < row.count; ++i) latest = std::max(latest, pushed[row.places[i]]);
-      if (latest <= seen[k]) continue;
+      if (latest <= seen[k] && !is_long) continue;
       const bool alone = row.response.x == row.response.y && row.response.y == row.response.z;
-      double limit = std::numeric_limits<double>::infinity();
-      if (row.most) limit = std::max(0.0, row.pressing + (*row.most - speed_off(row, step)) / row.along);
-      const double pressed = press(row, k, all, limit), rubbed = rub(row, k, all);
+      if (row.bonded) {
+        change = std::max(change, hold(row, step));
+        continue;
+      }
+      const bool vertex = is_long && row.count == 1 && row.solid->friction >= kJams;
+      const std::size_t by = vertex ? holder[row.places[0]] : rows.size();
+      const bool spare = by < rows.size() && by != k && releases[k] < kMostReleases;
+      if (spare && row.impulse() != Vec3d{}) ++releases[k];
+      const double pressed = spare ? release(row, step) : press(row, step), rubbed = spare ? 0.0 : rub(row, step);
+      if (vertex && !spare) holder[row.places[0]] = sticks(row) ? k : rows.size();
       change = std::max({change, pressed, rubbed});
       if (pressed > 0.0 || rubbed > 0.0) {
         ++clock;
@@ -366,51 +347,6 @@ int solve_short(std::span<ContactRow> rows, const InteractionStep& step) {
     if (change <= enough) return sweep;
   }
   return most;
-}
-
-ShapeDistance gap_of(const ContactRow& row, const Vec3d& end) {
-  ShapeDistance gap = distance_of(row, end);
-  gap.distance -= row.level;
-  return gap;
-}
-
-int solve_long(std::span<ContactRow> rows, const InteractionStep& step) {
-  const double enough = enough_for(rows), no_limit = std::numeric_limits<double>::infinity();
-  LongRows all(rows, step);
-  // A vertex in a corner that sticks to one wall needs nothing of another: they could only press and pull it against each other, as
-  // far as they happen to. In a short step the first one's impulse leaves the other nothing to do.
-  std::vector<std::size_t> holder(step.vertices.size(), rows.size());
-  std::vector<char> releases(rows.size(), 0);
-  int sweep = 1, wait = kTogether, together = wait;
-  for (;; ++sweep) {
-    double change = 0.0;
-    for (std::size_t k = 0; k < rows.size(); ++k) {
-      ContactRow& row = rows[k];
-      if (row.bonded) {
-        change = std::max(change, hold(row, k, all));
-        continue;
-      }
-      const bool vertex = row.count == 1 && row.solid->friction >= kJams;
-      const std::size_t by = vertex ? holder[row.places[0]] : rows.size();
-      const bool spare = by < rows.size() && by != k && releases[k] < kMostReleases;
-      if (spare && row.impulse() != Vec3d{}) ++releases[k];
-      change = std::max(change, spare ? release(row, k, all) : press(row, k, all, no_limit));
-      if (!spare) change = std::max(change, rub(row, k, all));
-      if (vertex && !spare) holder[row.places[0]] = sticks(row) ? k : rows.size();
-    }
-    if (change <= enough || sweep == kMostLongSweeps) break;
-    if (sweep < together) continue;
-    if (!all.solve_together(gap_of)) wait *= 2;
-    together = sweep + wait;
-  }
-  all.finish();
-  return sweep;
-}
-
-}  // namespace
-
-int solve(std::span<ContactRow> rows, const InteractionStep& step) {
-  return step.compliance != nullptr ? solve_long(rows, step) : solve_short(rows, step);
 }
 
 std::array<double, 3> deepest(const Shape& shape, const std::array<Vec3d, 3>& corners, double& depth) {
