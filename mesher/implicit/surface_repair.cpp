@@ -276,7 +276,7 @@ double area_of(std::span<const Vec3d> points, std::span<const Triangle> triangle
   return sum;
 }
 
-std::string percent(double share) { return show(std::round(share * 1e5) * 1e-3) + " %"; }
+std::string percent(double share) { return show(std::round(share * 1e5) / 1e3) + " %"; }
 
 void close_holes(SurfaceRepair& surface) {
   const EdgeUses edges = edge_uses(surface.triangles);
@@ -317,7 +317,7 @@ std::string SurfaceRepair::text() const {
   std::vector<std::string> parts;
   if (!welded.empty()) {
     parts.push_back(count_text(welded.size(), "point was", "points were") + " joined to others up to " +
-                    show(std::round(1e9 * farthest_weld) * 1e-6) + " mm away," + places(welded, itself));
+                    show(std::round(1e9 * farthest_weld) / 1e6) + " mm away," + places(welded, itself));
   }
   if (!doubled.empty()) {
     parts.push_back(count_text(doubled.size(), "double triangle was", "double triangles were") + " left out," +
