@@ -15,30 +15,7 @@ namespace {
 
 std::string heat_doc(const char* member) { return std::string("HeatSimulation::") + member; }
 
-using HeatRegion = std::variant<int, std::string>;
-using ThermalTissues = std::variant<ThermalTissue, std::map<HeatRegion, ThermalTissue>>;
-
-int heat_region(const TetMesh& mesh, const HeatRegion& region) {
-  if (const int* number = std::get_if<int>(&region)) return *number;
-  std::string known;
-  for (const auto& [number, name] : mesh.region_names) {
-    if (name == std::get<std::string>(region)) return number;
-    known += (known.empty() ? "" : ", ") + name;
-  }
-  throw nb::value_error(("the mesh has no region \"" + std::get<std::string>(region) + "\"; " +
-                         (known.empty() ? "its regions have no names" : "it has: " + known))
-                            .c_str());
-}
-
-std::map<int, ThermalTissue> by_region(const TetMesh& mesh, const ThermalTissues& given) {
-  std::map<int, ThermalTissue> tissues;
-  if (const auto* one = std::get_if<ThermalTissue>(&given)) {
-    for (std::size_t t = 0; t < mesh.tets.size(); ++t) tissues.emplace(mesh.region_of(t), *one);
-    return tissues;
-  }
-  for (const auto& [region, tissue] : std::get<1>(given)) tissues[heat_region(mesh, region)] = tissue;
-  return tissues;
-}
+using ThermalTissues = ByRegion<ThermalTissue>;
 
 /// A HeatSimulation as Python holds it: one thread at a time, functions of the caller's kept where the garbage collector sees them.
 class LiveHeat {
@@ -48,10 +25,7 @@ class LiveHeat {
   LiveHeat(const Variant& variant, const MeshLoader& load) : built_(std::in_place, variant, load) {}
 
   HeatSimulation& get() {
-    const std::thread::id busy = stepping_;
-    if (busy != std::thread::id{} && busy != std::this_thread::get_id())
-      throw std::runtime_error(
-          "the simulation is stepping in another thread; wait for it, or read it from an observer");
+    require_no_other_steps(stepping_);
     return own_ ? *own_ : built_->simulation;
   }
   const HeatSimulation& get() const { return const_cast<LiveHeat*>(this)->get(); }
@@ -127,21 +101,8 @@ TimeFunction<double> course_of(const char* name, const nb::object& given, LiveHe
   return Callback<double>(name, given, live.functions);
 }
 
-/// Adds what calls a function of the caller's; that of something refused is not kept.
-template <class Add>
-void adding(LiveHeat& live, const Add& add) {
-  live.get();
-  const auto before = static_cast<std::ptrdiff_t>(live.functions.size());
-  try {
-    add();
-  } catch (...) {
-    live.functions.erase(live.functions.begin() + before, live.functions.end());
-    throw;
-  }
-}
-
 void hold_vertices(LiveHeat& live, const VertexChoice& vertices, const nb::object& temperature) {
-  adding(live, [&] {
+  keeping_functions(live, [&] {
     if (nb::isinstance<nb::str>(vertices)) {
       live.get().hold(nb::cast<std::string>(vertices), course_of("temperature", temperature, live));
     } else {
@@ -221,7 +182,7 @@ void bind_heat_set_up(nb::class_<LiveHeat>& c) {
        "__init__",
        [](LiveHeat* self, const TetMesh& mesh, const ThermalTissues& tissues,
           const std::optional<HeatOptions>& options) {
-         new (self) LiveHeat(mesh, by_region(mesh, tissues), options.value_or(HeatOptions{}));
+         new (self) LiveHeat(mesh, of_regions(mesh, tissues), options.value_or(HeatOptions{}));
        },
        "mesh"_a, "tissues"_a, "options"_a = nb::none(), doc(heat_doc("HeatSimulation")))
       .def_static(
@@ -237,22 +198,24 @@ void bind_heat_set_up(nb::class_<LiveHeat>& c) {
       .def(
           "add_flux",
           [](LiveHeat& live, const std::string& set, const nb::object& flux) {
-            adding(live, [&] { live.get().add_flux(set, course_of("flux", flux, live)); });
+            keeping_functions(live, [&] { live.get().add_flux(set, course_of("flux", flux, live)); });
           },
           "set"_a, "flux"_a, doc(heat_doc("add_flux")),
           nb::sig(with_courses("def add_flux(self, set: str, flux: COURSE) -> None")))
       .def(
           "add_convection",
           [](LiveHeat& live, const std::string& set, double coefficient, const nb::object& ambient) {
-            adding(live, [&] { live.get().add_convection(set, coefficient, course_of("ambient", ambient, live)); });
+            keeping_functions(
+                live, [&] { live.get().add_convection(set, coefficient, course_of("ambient", ambient, live)); });
           },
           "set"_a, "coefficient"_a, "ambient"_a, doc(heat_doc("add_convection")),
           nb::sig(with_courses("def add_convection(self, set: str, coefficient: float, ambient: COURSE) -> None")))
       .def(
           "add_source",
-          [](LiveHeat& live, const HeatRegion& region, const nb::object& power) {
-            adding(live, [&] {
-              live.get().add_source(heat_region(live.get().mesh(), region), course_of("power_per_volume", power, live));
+          [](LiveHeat& live, const Region& region, const nb::object& power) {
+            keeping_functions(live, [&] {
+              live.get().add_source(region_number(live.get().mesh(), region),
+                                    course_of("power_per_volume", power, live));
             });
           },
           "region"_a, "power_per_volume"_a, doc(heat_doc("add_source")),
@@ -261,7 +224,7 @@ void bind_heat_set_up(nb::class_<LiveHeat>& c) {
           "add_line_source",
           [](LiveHeat& live, const Vec3d& from, const Vec3d& to, const nb::object& power, const nb::object& temperature,
              const nb::object& coefficient, double radius) {
-            adding(live, [&] {
+            keeping_functions(live, [&] {
               LineSource line{.from = from, .to = to};
               line.power_per_length = course_of("power_per_length", power, live);
               line.temperature = course_of("temperature", temperature, live);
@@ -363,21 +326,21 @@ void bind_heat_reading(nb::class_<LiveHeat>& c) {
                    nb::sig("def readings(self) -> dict[str, float]"))
       .def(
           "frozen_volume",
-          [](const LiveHeat& l, const std::optional<HeatRegion>& region) {
-            return region ? l.get().frozen_volume(heat_region(l.get().mesh(), *region)) : l.get().frozen_volume();
+          [](const LiveHeat& l, const std::optional<Region>& region) {
+            return region ? l.get().frozen_volume(region_number(l.get().mesh(), *region)) : l.get().frozen_volume();
           },
           "region"_a = nb::none(), doc(heat_doc("frozen_volume")))
       .def(
           "volume_below",
-          [](const LiveHeat& l, double temperature, const std::optional<HeatRegion>& region) {
-            return region ? l.get().volume_below(temperature, heat_region(l.get().mesh(), *region))
+          [](const LiveHeat& l, double temperature, const std::optional<Region>& region) {
+            return region ? l.get().volume_below(temperature, region_number(l.get().mesh(), *region))
                           : l.get().volume_below(temperature);
           },
           "temperature"_a, "region"_a = nb::none(), doc(heat_doc("volume_below")))
       .def(
           "dead_volume",
-          [](const LiveHeat& l, const std::optional<HeatRegion>& region) {
-            return region ? l.get().dead_volume(heat_region(l.get().mesh(), *region)) : l.get().dead_volume();
+          [](const LiveHeat& l, const std::optional<Region>& region) {
+            return region ? l.get().dead_volume(region_number(l.get().mesh(), *region)) : l.get().dead_volume();
           },
           "region"_a = nb::none(), doc(heat_doc("dead_volume")))
       .def(

@@ -39,42 +39,7 @@ Axes axes_of(const std::string& word) {
   return axes;
 }
 
-using Region = std::variant<int, std::string>;
-using Tissues = std::variant<Tissue, std::map<Region, Tissue>>;
-
-int region_number(const TetMesh& mesh, const Region& region) {
-  if (const int* number = std::get_if<int>(&region)) return *number;
-  std::string known;
-  for (const auto& [number, name] : mesh.region_names) {
-    if (name == std::get<std::string>(region)) return number;
-    known += (known.empty() ? "" : ", ") + name;
-  }
-  throw nb::value_error(("the mesh has no region \"" + std::get<std::string>(region) + "\"; " +
-                         (known.empty() ? "its regions have no names" : "it has: " + known))
-                            .c_str());
-}
-
-std::map<int, Tissue> tissues_of(const TetMesh& mesh, const Tissues& given) {
-  std::map<int, Tissue> tissues;
-  if (const auto* one = std::get_if<Tissue>(&given)) {
-    for (std::size_t t = 0; t < mesh.tets.size(); ++t) tissues.emplace(mesh.region_of(t), *one);
-    return tissues;
-  }
-  for (const auto& [region, tissue] : std::get<1>(given)) tissues[region_number(mesh, region)] = tissue;
-  return tissues;
-}
-
-/// Adds what calls a function of the caller's; that of something refused is not kept.
-template <class Add>
-auto keeping_functions(Live& live, const Add& add) {
-  const auto before = static_cast<std::ptrdiff_t>(live.functions.size());
-  try {
-    return add();
-  } catch (...) {
-    live.functions.erase(live.functions.begin() + before, live.functions.end());
-    throw;
-  }
-}
+using Tissues = ByRegion<Tissue>;
 
 ConstraintId drive(Live& live, const VertexChoice& vertices, const std::variant<PressMotion, nb::object>& motion,
                    const std::string& axes, std::optional<double> from) {
@@ -266,7 +231,7 @@ void bind_setting_up(nb::class_<Live>& c) {
   c.def(
        "__init__",
        [](Live* self, const TetMesh& mesh, const Tissues& tissues, const std::optional<SimulationOptions>& options) {
-         new (self) Live(mesh, tissues_of(mesh, tissues), options.value_or(SimulationOptions{}));
+         new (self) Live(mesh, of_regions(mesh, tissues), options.value_or(SimulationOptions{}));
        },
        "mesh"_a, "tissues"_a, "options"_a = nb::none(), doc(of("Simulation")))
       .def_static(
@@ -320,7 +285,7 @@ void bind_setting_up(nb::class_<Live>& c) {
       .def(
           "set_tissues",
           [](Live& live, const Tissues& tissues) {
-            live.change([&](Simulation& s) { s.set_tissues(tissues_of(s.mesh(), tissues)); });
+            live.change([&](Simulation& s) { s.set_tissues(of_regions(s.mesh(), tissues)); });
           },
           "tissues"_a, doc(of("set_tissues")))
       .def(

@@ -38,6 +38,11 @@ bool moves(const SimulationOptions& options) {
 
 }  // namespace
 
+void require_no_other_steps(std::thread::id busy) {
+  if (busy == std::thread::id{} || busy == std::this_thread::get_id()) return;
+  throw std::runtime_error("the simulation is stepping in another thread; wait for it, or read it from an observer");
+}
+
 LiveSimulation::LiveSimulation(TetMesh mesh, std::map<int, Tissue> tissues, const SimulationOptions& options)
     : own_(std::in_place, std::move(mesh), std::move(tissues), options), may_change_(moves(options)),
       first_vertices_(own_->mesh().vertices.size()) {}
@@ -48,10 +53,7 @@ LiveSimulation::LiveSimulation(const Variant& variant, const MeshLoader& load)
       first_vertices_(built_->simulation.mesh().vertices.size()) {}
 
 Simulation& LiveSimulation::get() {
-  const std::thread::id busy = stepping_;
-  if (busy != std::thread::id{} && busy != std::this_thread::get_id()) {
-    throw std::runtime_error("the simulation is stepping in another thread; wait for it, or read it from an observer");
-  }
+  require_no_other_steps(stepping_);
   return own_ ? *own_ : built_->simulation;
 }
 

@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "bind.h"
+#include "by_region.h"
 #include "glisson/scene/scene.h"
 
 namespace glisson::python {
@@ -100,6 +101,22 @@ class StepError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+
+/// @param busy  the thread that steps a simulation, if any does @throws std::runtime_error where that is another one
+void require_no_other_steps(std::thread::id busy);
+
+/// Adds what calls a function of the caller's; that of something refused is not kept.
+template <class Live, class Add>
+auto keeping_functions(Live& live, const Add& add) {
+  live.get();
+  const auto before = static_cast<std::ptrdiff_t>(live.functions.size());
+  try {
+    return add();
+  } catch (...) {
+    live.functions.erase(live.functions.begin() + before, live.functions.end());
+    throw;
+  }
+}
 
 class LiveSimulation {
  public:

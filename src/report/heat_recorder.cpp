@@ -50,24 +50,14 @@ std::string boiling_warning(const HeatRunSummary& s) {
 }
 
 HeatRecorder::HeatRecorder(Variant variant, RecorderOptions options, std::atomic<bool>& stop)
-    : variant_(std::move(variant)), options_(std::move(options)), stop_(stop) {}
-
-void HeatRecorder::guarded(const std::function<void()>& write) {
-  if (!error_.empty()) return;
-  try {
-    write();
-  } catch (const OutputError& error) {
-    error_ = error.what();
-    stop_ = true;
-  }
-}
+    : variant_(std::move(variant)), options_(std::move(options)), guarded_(stop) {}
 
 void HeatRecorder::on_start(const Variant&, const BuiltHeat& built) {
   columns_ = built.temperature_columns();
   temperatures_ = columns_.size();
   columns_.insert(columns_.end(), built.heat_columns().begin() + 1, built.heat_columns().end());
   data_.resize(columns_.size());
-  guarded([&] {
+  guarded_([&] {
     make_folder(options_.folder);
     if (variant_.output.frames > 0) make_folder(options_.folder / "frames");
     temperature_file_ = std::make_unique<LineFile>(options_.folder / "temperature.csv");
@@ -80,14 +70,14 @@ void HeatRecorder::on_start(const Variant&, const BuiltHeat& built) {
 void HeatRecorder::on_sample(const HeatSample& sample) {
   for (std::size_t i = 0; i < temperatures_; ++i) data_[i].push_back(sample.temperatures[i]);
   for (std::size_t i = temperatures_; i < columns_.size(); ++i) data_[i].push_back(sample.heat[i - temperatures_ + 1]);
-  guarded([&] {
+  guarded_([&] {
     temperature_file_->write(csv_line(sample.temperatures));
     heat_file_->write(csv_line(sample.heat));
   });
 }
 
 void HeatRecorder::on_frame(const HeatSimulation& s) {
-  guarded([&] {
+  guarded_([&] {
     const std::filesystem::path file = std::filesystem::path("frames") / fmt::format("frame_{:04}.vtu", frames_.size());
     TetMesh mesh = s.mesh();
     mesh.regions.resize(mesh.tets.size(), 0);
@@ -103,7 +93,7 @@ void HeatRecorder::on_frame(const HeatSimulation& s) {
 
 void HeatRecorder::on_end(const HeatRunSummary& summary) {
   summary_ = summary;
-  guarded([&] { write_whole(options_.folder / "summary.json", json_text(summary_json(), 2) + "\n"); });
+  guarded_([&] { write_whole(options_.folder / "summary.json", json_text(summary_json(), 2) + "\n"); });
 }
 
 const std::vector<double>& HeatRecorder::column(const std::string& name) const {

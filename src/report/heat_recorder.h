@@ -31,7 +31,7 @@ class HeatRecorder : public HeatObserver {
 
   bool started() const { return !columns_.empty(); }
   /// Why the disk refused; empty: it did not.
-  const std::string& error() const { return error_; }
+  const std::string& error() const { return guarded_.error(); }
   const Variant& variant() const { return variant_; }
   const HeatRunSummary& summary() const { return summary_; }
   /// One column of temperature.csv or heat.csv by name. @throws std::out_of_range naming it
@@ -44,19 +44,17 @@ class HeatRecorder : public HeatObserver {
   nlohmann::json charts(bool one_variant) const;
 
  private:
-  void guarded(const std::function<void()>& write);
   nlohmann::ordered_json summary_json() const;
 
   Variant variant_;
   RecorderOptions options_;
-  std::atomic<bool>& stop_;
+  GuardedWriting guarded_;
   std::vector<std::string> columns_;  ///< of temperature.csv, then of heat.csv without its time
   std::size_t temperatures_ = 0;      ///< how many are of temperature.csv
   std::vector<std::vector<double>> data_;
   std::unique_ptr<LineFile> temperature_file_, heat_file_;
   std::vector<std::pair<double, std::filesystem::path>> frames_;
   HeatRunSummary summary_;
-  std::string error_;
 };
 
 /// A sentence on an end that is the numbers' doing, and one on heat beyond what the model holds; empty where there is none.

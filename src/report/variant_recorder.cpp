@@ -13,22 +13,12 @@
 namespace glisson {
 
 VariantRecorder::VariantRecorder(Variant variant, RecorderOptions options, std::atomic<bool>& stop)
-    : variant_(std::move(variant)), options_(std::move(options)), stop_(stop) {}
-
-void VariantRecorder::guarded(const std::function<void()>& write) {
-  if (!error_.empty()) return;
-  try {
-    write();
-  } catch (const OutputError& error) {
-    error_ = error.what();
-    stop_ = true;
-  }
-}
+    : variant_(std::move(variant)), options_(std::move(options)), guarded_(stop) {}
 
 void VariantRecorder::on_start(const Variant&, const Simulation& simulation) {
   advice_ = advise_at_rest(variant_, simulation);
   surface_ = std::make_unique<SurfaceRecorder>(variant_, simulation, options_.surface_bytes);
-  guarded([&] {
+  guarded_([&] {
     make_folder(options_.folder);
     if (!variant_.instruments.empty()) {
       event_file_ = std::make_unique<LineFile>(options_.folder / "events.csv");
@@ -59,7 +49,7 @@ void VariantRecorder::on_built(const BuiltVariant& built) {
     probe_columns_.insert(probe_columns_.end(), built.probes.columns().begin(), built.probes.columns().end());
     probe_data_.resize(probe_columns_.size());
   }
-  guarded([&] {
+  guarded_([&] {
     files_.emplace_back(options_.folder / "forces.csv");
     files_.back().write(csv_line(table_->columns()));
     for (const ForceTable::Further& file : table_->further()) {
@@ -79,7 +69,7 @@ void VariantRecorder::on_built(const BuiltVariant& built) {
 
 void VariantRecorder::on_event(const RunEvent& event) {
   events_.push_back(event);
-  guarded([&] {
+  guarded_([&] {
     if (!event_file_) return;  // "probe lost", in a scene without instruments
     const auto& [time, depth, what] = event.what;
     event_file_->write(number_text(time) + "," + number_text(depth) + "," + what + "," + event.instrument);
@@ -90,11 +80,11 @@ void VariantRecorder::on_sample(const Sample& sample) {
   record_probes(sample);
   const std::vector<double> row = table_->row(sample);
   for (std::size_t i = 0; i < row.size(); ++i) data_[i].push_back(row[i]);
-  guarded([&] { files_.front().write(csv_line(row)); });
+  guarded_([&] { files_.front().write(csv_line(row)); });
   for (std::size_t i = 0; i < table_->further().size(); ++i) {
     const std::vector<double> own = ForceTable::row_of(table_->further()[i], sample);
     for (std::size_t k = 0; k < own.size(); ++k) further_data_[i][k].push_back(own[k]);
-    guarded([&] { files_[i + 1].write(csv_line(own)); });
+    guarded_([&] { files_[i + 1].write(csv_line(own)); });
   }
 }
 
@@ -103,13 +93,13 @@ void VariantRecorder::record_probes(const Sample& sample) {
   std::vector<double> row{sample.probe_time};
   row.insert(row.end(), sample.probes.begin(), sample.probes.end());
   for (std::size_t i = 0; i < row.size(); ++i) probe_data_[i].push_back(row[i]);
-  guarded([&] { probe_file_->write(csv_line(row)); });
+  guarded_([&] { probe_file_->write(csv_line(row)); });
 }
 
 void VariantRecorder::on_frame(const Simulation& simulation) {
   const TetFields fields = simulation.tet_fields();
   surface_->add(simulation, fields);
-  guarded([&] {
+  guarded_([&] {
     if (frames_) frames_->add(simulation, fields);
     if (view_) view_->add(simulation.time());
   });
@@ -119,7 +109,7 @@ void VariantRecorder::on_end(const RunSummary& summary) {
   summary_ = summary;
   rejected_ = rejected_poses(instruments_);
   instruments_.clear();
-  guarded([&] {
+  guarded_([&] {
     if (frames_) frames_->finish();
     write_whole(options_.folder / "summary.json", json_text(summary_with_tips(), 2) + "\n");
   });

@@ -21,6 +21,7 @@
 #include "report/check_result.h"
 #include "report/force_table.h"
 #include "report/frame_series.h"
+#include "report/guarded_writing.h"
 #include "report/output_file.h"
 #include "report/surface_recorder.h"
 #include "report/view_file.h"
@@ -57,7 +58,7 @@ class VariantRecorder : public RunObserver {
   /// Whether the run got as far as its start: before that there is nothing to report.
   bool started() const { return surface_ != nullptr; }
   /// Why the disk refused; empty: it did not.
-  const std::string& error() const { return error_; }
+  const std::string& error() const { return guarded_.error(); }
   const Variant& variant() const { return variant_; }
   const std::string& scene() const { return options_.scene; }
   const RunSummary& summary() const { return summary_; }
@@ -77,7 +78,6 @@ class VariantRecorder : public RunObserver {
   nlohmann::json json(double law_reach) const;
 
  private:
-  void guarded(const std::function<void()>& write);
   void record_probes(const Sample& sample);
   nlohmann::json events_json() const;
   nlohmann::ordered_json summary_with_tips() const;
@@ -85,7 +85,7 @@ class VariantRecorder : public RunObserver {
 
   Variant variant_;
   RecorderOptions options_;
-  std::atomic<bool>& stop_;
+  GuardedWriting guarded_;
   std::optional<ForceTable> table_;  // from on_built on
   std::vector<LineFile> files_;      // forces.csv, then forces_<name>.csv
   std::unique_ptr<LineFile> event_file_, probe_file_;
@@ -102,7 +102,6 @@ class VariantRecorder : public RunObserver {
   RunSummary summary_;
   std::vector<Advice> advice_;
   std::uint64_t rejected_ = 0;
-  std::string error_;
 };
 
 }  // namespace glisson

@@ -82,7 +82,7 @@ std::vector<Advice> advise_on_laws(std::span<const Variant> variants);
 /// @throws SceneError if it cannot be built, and what `load` throws
 std::vector<Advice> advise(const Variant& variant, const MeshLoader& load);
 
-/// The same of a variant that is about to run, without the rules that build it again: `limits` and `stages` are left out.
+/// The same of a variant that is about to run, without the rules that build it again: `limits` and `viscous` are left out.
 /// @param simulation  its body before the first step
 std::vector<Advice> advise_at_rest(const Variant& variant, const Simulation& simulation);
 
