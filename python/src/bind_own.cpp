@@ -85,7 +85,7 @@ class OwnStep {
 
   const InteractionStep& get() const {
     if (step_ != nullptr) return *step_;
-    throw std::runtime_error("the step is over: read it in add_forces, constrain or moved, and keep copies");
+    throw std::runtime_error("the step is over: read it in add_forces, declare, solved or moved, and keep copies");
   }
   template <class Read>
   Doubles each(const Read& read) const {
@@ -123,14 +123,42 @@ class OwnStep {
       (viscous ? w.viscous : w.elastic) += values[k];
     }
   }
+ private:
+  const InteractionStep* step_;
+};
+
+/// The rows of an interaction in Python; only while it is called.
+class OwnRows {
+ public:
+  OwnRows(const OwnStep& step, StepRows& rows) : step_(&step), rows_(&rows) {}
+  void close() { step_ = nullptr, rows_ = nullptr; }
+
+  void hold(nb::handle which, const ArrayLike& velocities) const {
+    const auto [places, values] = step().placed(which, velocities, "velocities");
+    for (std::size_t k = 0; k < places.size(); ++k) rows().hold(places[k], values[k], {values[k], values[k]});
+  }
   void push(nb::handle which, const ArrayLike& impulses) const {
-    if (get().mobility.empty()) throw std::runtime_error("push is for constrain(); forces go by add_force");
-    const auto [places, values] = placed(which, impulses, "impulses");
-    for (std::size_t k = 0; k < places.size(); ++k) get().push(places[k], values[k]);
+    const auto [places, values] = step().placed(which, impulses, "impulses");
+    for (std::size_t k = 0; k < places.size(); ++k) rows().push(places[k], values[k], WorkSink::contact, {});
+  }
+  Doubles impulses() const {
+    std::vector<Vec3d> values;
+    for (std::size_t k = 0; k < rows().hold_count(); ++k) values.push_back(rows().holding_impulse(k));
+    return vectors(std::move(values));
   }
 
  private:
-  const InteractionStep* step_;
+  const OwnStep& step() const {
+    if (step_ == nullptr) throw std::runtime_error("the step is over: use rows in declare and solved, and keep copies");
+    return *step_;
+  }
+  StepRows& rows() const {
+    step();
+    return *rows_;
+  }
+
+  const OwnStep* step_;
+  StepRows* rows_;
 };
 
 /// An interaction whose members are methods of a subclass in Python.
@@ -163,7 +191,13 @@ class OwnInteraction : public Interaction {
     return reached_;
   }
   void add_forces(const InteractionStep& step) override { hand("add_forces", step); }
-  void constrain(const InteractionStep& step) override { hand("constrain", step); }
+  void declare(const InteractionStep& step, StepRows& rows, int round) override {
+    if (round == 0) hand("declare", step, rows);
+  }
+  /// Reading changes no row.
+  void solved(const InteractionStep& step, const StepRows& rows) override {
+    hand("solved", step, const_cast<StepRows&>(rows));
+  }
   void moved(const InteractionStep& step) override {
     hand("moved", step);
     const nb::gil_scoped_acquire gil;
@@ -194,6 +228,16 @@ class OwnInteraction : public Interaction {
       const nb::object seen = nb::cast(OwnStep(step), nb::rv_policy::move);
       call_kept(nb::find(*this), method, seen);
       nb::cast<OwnStep&>(seen).close();
+    });
+  }
+
+  void hand(const char* method, const InteractionStep& step, StepRows& rows) {
+    const nb::gil_scoped_acquire gil;
+    keeping([&] {
+      const nb::object seen = nb::cast(OwnStep(step), nb::rv_policy::move);
+      const nb::object wanted = nb::cast(OwnRows(nb::cast<OwnStep&>(seen), rows), nb::rv_policy::move);
+      call_kept(nb::find(*this), method, seen, wanted);
+      nb::cast<OwnStep&>(seen).close(), nb::cast<OwnRows&>(wanted).close();
     });
   }
 
@@ -240,9 +284,17 @@ void bind_step(nb::module_& m) {
           of("mobility"))
       .def("add_force", &OwnStep::add_force, "vertices"_a, "forces"_a, "viscous"_a = false,
            "In add_forces: forces [N], (n, 3), on active vertices. They count as elastic or as viscous forces in the "
-           "energy balance.")
-      .def("push", &OwnStep::push, "vertices"_a, "impulses"_a,
-           "In constrain: impulses [N s], (n, 3), on active vertices; held components do not move.");
+           "energy balance.");
+  nb::class_<OwnRows>(m, "StepRows",
+                      "What an Interaction wants of the body at the end of a step; one solver meets the rows of all tools "
+                      "together. Valid only in the call that receives it.")
+      .def("hold", &OwnRows::hold, "vertices"_a, "velocities"_a,
+           "In declare: active vertices end the step with these velocities [m/s], (n, 3), whatever impulses that takes; "
+           "what a support holds stays. A vertex that several tools hold gets the mean of what they want.")
+      .def("push", &OwnRows::push, "vertices"_a, "impulses"_a,
+           "In declare: impulses [N s], (n, 3), on active vertices; held components do not move.")
+      .def_prop_ro("impulses", &OwnRows::impulses,
+                   "In solved: impulses on the vertices that were held, (n, 3), in the order in which they were declared [N s]");
 }
 
 constexpr const char* kInteraction =
@@ -304,7 +356,10 @@ void bind_own_interaction(nb::module_& m) {
       .def(
           "add_forces", [](OwnInteraction&, const OwnStep&) {}, "step"_a, of("add_forces"))
       .def(
-          "constrain", [](OwnInteraction&, const OwnStep&) {}, "step"_a, of("constrain"))
+          "declare", [](OwnInteraction&, const OwnStep&, const OwnRows&) {}, "step"_a, "rows"_a,
+          "Declares what is to hold at the end of the step; velocities are those without any tool.")
+      .def(
+          "solved", [](OwnInteraction&, const OwnStep&, const OwnRows&) {}, "step"_a, "rows"_a, of("solved"))
       .def(
           "moved", [](OwnInteraction&, const OwnStep&) {}, "step"_a, of("moved"))
       .def(

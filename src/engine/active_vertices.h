@@ -4,7 +4,7 @@
 
 #include "engine/layout/submesh.h"
 #include "engine/vertex_records.h"
-#include "glisson/simulation/interaction.h"
+#include "glisson/simulation/active_vertex.h"
 
 namespace glisson::engine {
 

@@ -19,7 +19,7 @@
 #include "element/stiff_element.h"
 #include "glisson/archive.h"
 #include "glisson/math.h"
-#include "glisson/simulation/interaction.h"
+#include "glisson/simulation/active_vertex.h"
 #include "material/strain.h"
 
 namespace glisson {

@@ -18,7 +18,8 @@
 #include <utility>
 #include <vector>
 
-#include "glisson/simulation/interaction.h"
+#include "glisson/simulation/active_vertex.h"
+#include "glisson/simulation/held_rows.h"
 
 namespace glisson::engine {
 

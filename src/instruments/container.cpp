@@ -11,9 +11,10 @@
 
 #include "base/require_fields.h"
 #include "base/two_across.h"
+#include "contact/contact_reach.h"
+#include "contact/found_inside.h"
+#include "contact/row_group.h"
 #include "glisson/simulation/simulation.h"
-#include "instruments/contact/contact_books.h"
-#include "instruments/contact/contact_reach.h"
 
 namespace glisson {
 namespace {
@@ -24,7 +25,6 @@ constexpr double kRim =
     1e-9;  ///< of the vessel's height: tissue up to so far above its rim is beside the wall, whatever rounding says
 /// Of the vessel's size: tissue that moves no more than that in a step has come to rest.
 constexpr double kStill = 1e-12;
-constexpr int kMostLooks = 12;  ///< for points that come outside in a long step
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 /// A plate whose outward normal is n, through a point; all in the frame of the vessel.
@@ -78,10 +78,9 @@ struct Container::State : ContainerKept {
   std::vector<ContactSolid> solids;  ///< the floor first
   double height = kInfinite, size = 0.0;
   ContactReach reach;
-  ContactBooks books;
+  WorkAccount account;
   bool is_long = false;  ///< acts in long steps: bonds rest from the start, and no step lets go of what it has found
-  std::vector<ContactRow> rows;
-  std::set<Place> has_row;                          ///< in a long step
+  std::set<Place> has_row;                          ///< where points are looked for again in a step
   std::map<Place, std::pair<double, Vec3d>> trial;  ///< of a long step: impulses of the last iteration [N s]
   /// What a step needs of a bond. The vessel stands still.
   struct Hold {
@@ -99,18 +98,22 @@ struct Container::State : ContainerKept {
   bool holds_at(const Vec3d& x) const { return options.pose.to_own(x).z <= height * (1.0 + kRim); }
   void require_inside(const BodyView& body) const;
   void bond_first(const BodyView& body);
+  void bond(const std::map<std::uint32_t, Bond>& fresh);
   void list_bonds();
   void wake();
   std::span<const std::uint32_t> without_still(std::span<const std::uint32_t> vertices,
                                                std::vector<std::uint32_t>& left) const;
   void look_for_rest(const InteractionStep& step);
-  void add_rows(const InteractionStep& step);
+  void add_rows(const InteractionStep& step, RowGroup& rows, bool again);
+  void declare_short(const InteractionStep& step, RowGroup& rows, int round);
+  void declare_long(const InteractionStep& step, RowGroup& rows, int round);
   Place place_of(const ContactRow& row, const InteractionStep& step) const;
   void begin_row(ContactRow& row, const InteractionStep& step) const;
-  void solve_long(const InteractionStep& step);
+  void remember(const InteractionStep& step, const RowGroup& rows);
   void rest_bonds();
   void bear_rest(const InteractionStep& step);
-  void hold_bonds(const InteractionStep& step);
+  void add_holds(const InteractionStep& step, RowGroup& rows) const;
+  void bear_bonds(const InteractionStep& step, const RowGroup& rows);
   void load(const ContactSolid& solid, const Vec3d& normal, const Vec3d& force);
 };
 
@@ -123,6 +126,7 @@ void Container::State::add_solid(const Shape& shape, const Pose& pose) {
   s.push_out_speed = options.push_out_speed;
   s.holds = solids.empty() ? options.holds_floor : options.holds_wall;
   s.grip = kTouch * size;
+  s.still = true;
   solids.push_back(s);
 }
 
@@ -189,6 +193,17 @@ void Container::State::list_bonds() {
   still.resize(bonded.size(), 0);
 }
 
+/// Takes in what has touched. What bonds exert stays as it is.
+void Container::State::bond(const std::map<std::uint32_t, Bond>& fresh) {
+  std::map<std::uint32_t, Vec3d> forces;
+  for (const Hold& hold : holds) forces[hold.vertex] = hold.force;
+  for (const auto& [vertex, place] : fresh) bonds[vertex] = place;
+  list_bonds();
+  for (Hold& hold : holds) {
+    if (const auto known = forces.find(hold.vertex); known != forces.end()) hold.force = known->second;
+  }
+}
+
 /// Bonds are held by impulses until they are seen to rest.
 void Container::State::wake() {
   if (is_long) return rest_bonds();
@@ -224,7 +239,8 @@ void Container::State::look_for_rest(const InteractionStep& step) {
   }
 }
 
-void Container::State::add_rows(const InteractionStep& step) {
+/// @param again  points that have a row are left out
+void Container::State::add_rows(const InteractionStep& step, RowGroup& rows, bool again) {
   for (const std::uint32_t v : reach.vertices()) {
     if (bonded[v] != 0) continue;
     const std::uint32_t place = step.place_of[v];
@@ -233,14 +249,11 @@ void Container::State::add_rows(const InteractionStep& step) {
     for (std::uint32_t k = 0; k < solids.size(); ++k) {
       const Vec3d start = solids[k].before.to_own(x);
       if (distance_to(shapes[k], start).distance > norm(way) + solids[k].grip) continue;
-      if (is_long && has_row.count({v, k}) != 0) continue;
+      if (again && has_row.count({v, k}) != 0) continue;
       ContactRow row;
       row.places[0] = place, row.solid = &solids[k];
       found_inside.mark(row, v, k, start, begun);
-      if (prepare(row, step)) {
-        rows.push_back(row);
-        if (is_long) has_row.insert({v, k});
-      }
+      if (prepare(row, step)) rows.points.push_back(row);
       found_inside.settle(row, v, k);
     }
   }
@@ -249,6 +262,29 @@ void Container::State::add_rows(const InteractionStep& step) {
 
 Container::State::Place Container::State::place_of(const ContactRow& row, const InteractionStep& step) const {
   return {step.vertices[row.places[0]].vertex, static_cast<std::uint32_t>(row.solid - solids.data())};
+}
+
+void Container::State::declare_short(const InteractionStep& step, RowGroup& rows, int round) {
+  if (round > 0 && !rows.others_act) return;
+  if (round > 0) {
+    has_row.clear();
+    for (const ContactRow& row : rows.points) has_row.insert(place_of(row, step));
+  } else {
+    rows.account = &account;
+    add_holds(step, rows);
+  }
+  add_rows(step, rows, round > 0);
+}
+
+/// Points move one another, so that those that come outside by it are looked for until there are none.
+void Container::State::declare_long(const InteractionStep& step, RowGroup& rows, int round) {
+  if (round == 0) has_row.clear();
+  const std::size_t known = rows.points.size();
+  add_rows(step, rows, true);
+  for (ContactRow& row : std::span(rows.points).subspan(known)) {
+    has_row.insert(place_of(row, step));
+    begin_row(row, step);
+  }
 }
 
 /// Begins with what the row had in the last iteration, or with the force of the last step.
@@ -260,22 +296,12 @@ void Container::State::begin_row(ContactRow& row, const InteractionStep& step) c
   } else if (const auto at = last_pressing.find(place); at != last_pressing.end()) {
     row.pressing = at->second * step.h;
   }
-  if (row.pressing != 0.0) push(row, step, row.impulse());
 }
 
-/// Points move one another, so that those that come outside by it are looked for until there are none.
-void Container::State::solve_long(const InteractionStep& step) {
-  has_row.clear();
-  for (int look = 0; look < kMostLooks; ++look) {
-    const std::size_t known = rows.size();
-    add_rows(step);
-    if (rows.size() == known) break;
-    for (std::size_t k = known; k < rows.size(); ++k) begin_row(rows[k], step);
-    glisson::solve(rows, step);
-    step.compliance->settle(step.vertices);
-  }
+/// Keeps what the rows of an iteration had for the next, and for the next step.
+void Container::State::remember(const InteractionStep& step, const RowGroup& rows) {
   trial.clear(), last_pressing.clear();
-  for (const ContactRow& row : rows) {
+  for (const ContactRow& row : rows.points) {
     trial[place_of(row, step)] = {row.pressing, row.rubbing};
     if (row.pressing != 0.0) last_pressing[place_of(row, step)] = row.pressing / step.h;
   }
@@ -301,21 +327,28 @@ void Container::State::bear_rest(const InteractionStep& step) {
   }
 }
 
-/// A bond at rest bears what its tissue exerts; others are stopped by impulses.
-void Container::State::hold_bonds(const InteractionStep& step) {
+/// Bonds that do not rest are stopped by impulses.
+void Container::State::add_holds(const InteractionStep& step, RowGroup& rows) const {
+  for (const Hold& hold : holds) {
+    const std::uint32_t place = step.place_of[hold.vertex];
+    if (place == InteractionStep::kNowhere) continue;
+    rows.holds.push_back({.place = place, .velocity = (hold.there - step.position(place)) * (1.0 / step.h), .tool = {}});
+  }
+}
+
+/// A bond at rest bears what its tissue exerts, others what stops them.
+void Container::State::bear_bonds(const InteractionStep& step, const RowGroup& rows) {
   if (is_long) {  // they rest, but for those that have come to be in this step, which have rows
     for (Hold& hold : holds) hold.force = {};
     return;
   }
   auto resting = step.resting.begin();
+  auto held_row = rows.holds.begin();
   for (Hold& hold : holds) {
     const std::uint32_t place = step.place_of[hold.vertex];
     hold.force = {};
     if (place != InteractionStep::kNowhere) {
-      const Vec3d impulse = stopping(step, place, (hold.there - step.position(place)) * (1.0 / step.h));
-      step.push(place, impulse);
-      step.book(WorkSink::contact, place, impulse);
-      hold.force = impulse * (1.0 / step.h);
+      hold.force = (held_row++)->impulse * (1.0 / step.h);
     } else {
       while (resting != step.resting.end() && resting->vertex < hold.vertex) ++resting;
       if (resting == step.resting.end() || resting->vertex != hold.vertex) continue;
@@ -389,43 +422,28 @@ std::optional<std::span<const std::uint32_t>> Container::rests() {
   return s.rests;
 }
 
-void Container::add_forces(const InteractionStep& step) { state_->books.begin(step); }
-
-void Container::constrain(const InteractionStep& step) {
+void Container::declare(const InteractionStep& step, StepRows& rows, int round) {
   State& s = *state_;
-  s.loads = {}, s.bearing.clear();
-  s.rows.clear();
-  if (s.is_long) {
-    s.solve_long(step);
-  } else {
-    s.add_rows(step);
-    if (!s.rows.empty()) s.books.solve(s.rows, step);
-    s.books.close(s.rows, step);
-  }
-  const std::size_t bonds_before = s.bonds.size();
-  for (const ContactRow& row : s.rows) {
-    if (row.impulse() == Vec3d{}) continue;
-    const Vec3d force = row.impulse() * (1.0 / step.h);
-    s.bearing.push_back({step.vertices[row.places[0]].vertex, force, dot(force, row.normal)});
-    s.load(*row.solid, row.normal, force);
-    step.book(WorkSink::contact, row.places[0], row.normal * row.pressing);
-    step.book(WorkSink::friction, row.places[0], row.rubbing);
-    const auto solid = static_cast<std::uint32_t>(row.solid - s.solids.data());
-    if (s.options.bonded) s.bonds[step.vertices[row.places[0]].vertex] = {solid, end_of(row, step)};
-  }
-  if (s.bonds.size() > bonds_before) s.list_bonds();
-  s.hold_bonds(step);
+  s.is_long ? s.declare_long(step, rows.group(), round) : s.declare_short(step, rows.group(), round);
 }
 
-void Container::tell_held(const InteractionStep& step, HeldRows& held) const {
-  const State& s = *state_;
-  for (const ContactRow& row : s.rows) glisson::tell_held(row, step, held);
-  for (const State::Hold& hold : s.holds) {
-    const std::uint32_t place = step.place_of[hold.vertex];
-    if (place == InteractionStep::kNowhere) continue;
-    const Vec3d off = step.position(place) + step.vertices[place].velocity * step.h - hold.there;
-    if (norm(off) <= kStill * s.size) held.add_vertex(hold.vertex);
+void Container::solved(const InteractionStep& step, const StepRows& found) {
+  State& s = *state_;
+  const RowGroup& rows = found.group();
+  s.loads = {}, s.bearing.clear();
+  if (s.is_long) s.remember(step, rows);
+  std::map<std::uint32_t, ContainerKept::Bond> fresh;
+  for (const ContactRow& row : rows.points) {
+    if (row.impulse() == Vec3d{}) continue;
+    const std::uint32_t vertex = step.vertices[row.places[0]].vertex;
+    const Vec3d force = row.impulse() * (1.0 / step.h);
+    s.bearing.push_back({vertex, force, dot(force, row.normal)});
+    s.load(*row.solid, row.normal, force);
+    const auto solid = static_cast<std::uint32_t>(row.solid - s.solids.data());
+    if (s.options.bonded) fresh[vertex] = {solid, end_of(row, step)};
   }
+  s.bear_bonds(step, rows);
+  if (!fresh.empty()) s.bond(fresh);
 }
 
 int Container::most_drag_stages() const {
@@ -449,7 +467,7 @@ void Container::moved(const InteractionStep& step) {
 
 void Container::archive(Archive& ar) {
   State& s = *state_;
-  ar(s.begun, s.books, s.bonds, s.found_inside, s.reach, s.still_changed, s.last_pressing);
+  ar(s.begun, s.account, s.bonds, s.found_inside, s.reach, s.still_changed, s.last_pressing);
   ar.same_size(s.still);
   for (const auto& [v, bond] : s.bonds) ar.check(v < s.reach.surface().body_vertices() && bond.solid < s.solids.size());
   if (ar.reads()) s.list_bonds();
@@ -459,7 +477,7 @@ std::shared_ptr<const void> Container::save_state() const {
   const State& s = *state_;
   std::vector<Vec3d> forces;
   for (const State::Hold& hold : s.holds) forces.push_back(hold.force);
-  return std::make_shared<const SavedContainer>(SavedContainer{s, std::move(forces), s.reach.seen(), s.books.taken()});
+  return std::make_shared<const SavedContainer>(SavedContainer{s, std::move(forces), s.reach.seen(), s.account.taken()});
 }
 
 void Container::load_state(const std::shared_ptr<const void>& state, const BodyView* other_body) {
@@ -468,7 +486,7 @@ void Container::load_state(const std::shared_ptr<const void>& state, const BodyV
   static_cast<ContainerKept&>(s) = saved.kept;
   if (other_body != nullptr) s.reach.set_body(*other_body);
   s.reach.set_seen(saved.seen);
-  s.books.set_taken(saved.taken);
+  s.account.set_taken(saved.taken);
   s.list_bonds();
   for (std::size_t k = 0; k < s.holds.size(); ++k) s.holds[k].force = saved.hold_forces[k];
 }

@@ -31,10 +31,11 @@ class Magnet final : public Instrument {
   }
   void body_changed(const BodyView&, std::span<const std::uint32_t>) override {}
   std::span<const std::uint32_t> reach(double, double) override { return {&vertex_, 1}; }
-  void constrain(const InteractionStep& step) override {
+  void declare(const InteractionStep& step, StepRows& rows, int round) override {
+    if (round > 0) return;
     drive(step);
     forces_ = {.normal = {0, 0, kPull}};
-    step.push(step.place_of[vertex_], forces_.normal * step.h);
+    rows.push(step.place_of[vertex_], forces_.normal * step.h, WorkSink::contact, {});
   }
   void archive(Archive& ar) override { archive_motion(ar); }
 

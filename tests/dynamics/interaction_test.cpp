@@ -28,12 +28,11 @@ struct Probe final : Interaction {
     ActiveVertex& w = step.vertices[step.place_of[vertex]];
     w.elastic += force - w.displacement * spring;
   }
-  void constrain(const InteractionStep& step) override {
-    if (!holds) return;
-    const std::size_t k = step.place_of[vertex];
-    const Vec3d v = step.vertices[k].velocity, a = step.mobility[k];
-    step.push(k, {-v.x / a.x, -v.y / a.y, -v.z / a.z});
-    given = step.impulses[k] * (1.0 / step.h);
+  void declare(const InteractionStep& step, StepRows& rows, int round) override {
+    if (holds && round == 0) rows.hold(step.place_of[vertex], {}, {});
+  }
+  void solved(const InteractionStep& step, const StepRows& rows) override {
+    if (holds) given = rows.holding_impulse(0) * (1.0 / step.h);
   }
   double squared_frequency() const override { return spring / lightest; }
 };
@@ -161,7 +160,9 @@ TEST(Interaction, SupportsBearIt) {
     void body_changed(const BodyView&, std::span<const std::uint32_t>) override {}
     std::uint32_t vertex = 0;
     std::span<const std::uint32_t> reach(double, double) override { return {&vertex, 1}; }
-    void constrain(const InteractionStep& step) override { step.push(step.place_of[0], Vec3d{0, 0, -0.5} * step.h); }
+    void declare(const InteractionStep& step, StepRows& rows, int round) override {
+      if (round == 0) rows.push(step.place_of[0], Vec3d{0, 0, -0.5} * step.h, WorkSink::contact, {});
+    }
   };
   s.attach(std::make_shared<Push>());
   const TetMesh mesh = block();

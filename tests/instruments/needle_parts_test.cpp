@@ -3,7 +3,8 @@
 
 #include <Eigen/Dense>
 
-#include "instruments/needle/shaft.h"
+#include "contact/shaft_block.h"
+#include "instruments/needle/cantilever.h"
 #include "instruments/needle/tissue_zone.h"
 
 namespace glisson::needle_parts_test {
@@ -70,12 +71,12 @@ TEST(TissueZone, CentreOfAHalfBallIsExact) {
 TEST(Shaft, CantileverBends) {
   const std::vector<double> from_hand{0.04, 0.1};
   const double bending = 0.0255, load = 0.2;
-  const Eigen::MatrixXd C = shaft::cantilever(from_hand, bending);
+  const Eigen::MatrixXd C = cantilever(from_hand, bending);
   EXPECT_NEAR(C(1, 1) * load, load * 1e-3 / (3.0 * bending), 1e-15);
   EXPECT_NEAR(C(0, 1) * load, load * 0.0016 * (0.3 - 0.04) / (6.0 * bending), 1e-15);
   EXPECT_EQ(C(0, 1), C(1, 0));
-  EXPECT_EQ(shaft::cantilever(from_hand, 0.0).norm(), 0.0);
-  EXPECT_EQ(shaft::cantilever(std::vector<double>{-0.01}, bending)(0, 0), 0.0);  // behind the hand nothing bends
+  EXPECT_EQ(cantilever(from_hand, 0.0).norm(), 0.0);
+  EXPECT_EQ(cantilever(std::vector<double>{-0.01}, bending)(0, 0), 0.0);  // behind the hand nothing bends
 }
 
 constexpr double kStep = 1e-3;

@@ -2,7 +2,7 @@
 #include <random>
 
 #include "glisson/instruments/tool_motion.h"
-#include "instruments/contact/shape.h"
+#include "contact/shape_traits.h"
 #include "instruments/contact_scenes.h"
 
 namespace glisson::shape_test {

@@ -59,7 +59,8 @@ struct Own final : Interaction {
   }
   void state_set(std::span<const Vec3d>) override { asker->at("state_set"); }
   void add_forces(const InteractionStep&) override { asker->at("add_forces"); }
-  void constrain(const InteractionStep&) override { asker->at("constrain"); }
+  void declare(const InteractionStep&, StepRows&, int) override { asker->at("declare"); }
+  void solved(const InteractionStep&, const StepRows&) override { asker->at("solved"); }
   bool tries_again() override {
     asker->at("tries_again");
     return false;

@@ -39,7 +39,7 @@ TEST(StepGuardPlaces, AreAllCalled) {
   EXPECT_EQ(all,
             (std::set<std::string>{"motion",      "pose motion",       "scale",           "push",        "driver",
                                    "attached",    "body_changed",      "reach",           "keeps",       "rests",
-                                   "state_set",   "add_forces",        "constrain",       "tries_again", "moved",
+                                   "state_set",   "add_forces",        "declare",         "solved",      "tries_again", "moved",
                                    "energy",      "add_forces_at",     "add_stiffness",   "overshoots",  "archive",
                                    "next_corner", "squared_frequency", "released_energy", "tool_energy", "add_contact",
                                    "save_state",  "load_state"}));

@@ -32,8 +32,11 @@ class Own(glisson.OwnInteraction):
     def add_forces(self, step):
         self.at("add_forces")
 
-    def constrain(self, step):
-        self.at("constrain")
+    def declare(self, step, rows):
+        self.at("declare")
+
+    def solved(self, step, rows):
+        self.at("solved")
 
     def moved(self, step):
         self.at("moved")
@@ -48,7 +51,7 @@ class Own(glisson.OwnInteraction):
 
 
 PLACES = ["motion", "pose motion", "scale", "driver", "push", "attached", "body_changed", "reach", "add_forces"]
-PLACES += ["constrain", "moved", "squared_frequency", "past"]
+PLACES += ["declare", "solved", "moved", "squared_frequency", "past"]
 
 
 def run(act):

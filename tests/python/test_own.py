@@ -168,15 +168,17 @@ def test_an_interaction_of_ones_own():
 
 
 def test_impulses_hold_a_vertex():
-    """constrain() may take a vertex's velocity away by impulses, and it stays where it is."""
+    """A row that holds a vertex takes its velocity away, and it stays where it is; solved() has the impulse, a support's force."""
 
     class Pin(glisson.OwnInteraction):
         def reach(self, time, h):
             return [self.vertex]
 
-        def constrain(self, step):
-            at = step.vertices == self.vertex
-            step.push([self.vertex], -step.velocity[at] / step.mobility[at])
+        def declare(self, step, rows):
+            rows.hold([self.vertex], [[0, 0, 0]])
+
+        def solved(self, step, rows):
+            self.force = rows.impulses[0] / step.h
 
     pin = Pin()
     body, _ = loaded()
@@ -209,7 +211,6 @@ def test_mistakes_of_an_interaction_are_told():
         (after("forces", lambda s: None, named=(99999,)), ValueError, "99999"),
         (after("forces", lambda s: s.add_force([20], [[0, 0, 1]])), ValueError, "not active"),
         (after("forces", lambda s: s.add_force([3], [0, 0, 1])), ValueError, "expected"),
-        (after("forces", lambda s: s.push([3], [[0, 0, 1]])), RuntimeError, "constrain"),
         (after("forces", lambda s: 1 / 0), ZeroDivisionError, "division"),
     ]
     for interaction, error, words in cases:

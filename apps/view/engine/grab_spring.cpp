@@ -76,33 +76,27 @@ void GrabSpring::draw(const Vec3d& way, double within) {
 }
 
 /// Each vertex to where the hand is at the end of the step; what a support holds stays.
-void GrabSpring::constrain(const InteractionStep& step) {
-  if (how_ != Hold::bonded || !holds()) return;
+void GrabSpring::declare(const InteractionStep& step, StepRows& rows, int round) {
+  if (how_ != Hold::bonded || !holds() || round > 0) return;
   const Vec3d left = way_ - gone_;
   const double far = norm(left), reach = speed_ * step.h;
   gone_ = far <= reach ? way_ : gone_ + left * (reach / far);
-  force_ = {};
+  row_count_ = 0;
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
     const std::uint32_t place = step.place_of[vertices_[i]];
     if (place == InteractionStep::kNowhere) continue;
     const ActiveVertex& v = step.vertices[place];
     Vec3d missing = (held_at_[i] + gone_ - v.displacement) * (1.0 / step.h) - v.velocity;
     if (const double kick = norm(missing); kick > kMostKick) missing = missing * (kMostKick / kick);
-    Vec3d impulse{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double mobility = step.mobility[place][k];
-      if (mobility > 0.0) impulse[k] = missing[k] / mobility;
-    }
-    step.push(place, impulse);
-    force_ += impulse * (1.0 / step.h);
+    rows.hold(place, v.velocity + missing, {});
+    ++row_count_;
   }
 }
 
-void GrabSpring::tell_held(const InteractionStep& step, HeldRows& held) const {
-  if (how_ != Hold::bonded) return;
-  for (const std::uint32_t v : vertices_) {
-    if (step.place_of[v] != InteractionStep::kNowhere) held.add_vertex(v);
-  }
+void GrabSpring::solved(const InteractionStep& step, const StepRows& rows) {
+  if (how_ != Hold::bonded || !holds()) return;
+  force_ = {};
+  for (std::size_t k = 0; k < row_count_; ++k) force_ += rows.holding_impulse(k) * (1.0 / step.h);
 }
 
 void GrabSpring::add_forces(const InteractionStep& step) {

@@ -34,8 +34,8 @@ class GrabSpring final : public Interaction {
   std::span<const std::uint32_t> reach(double, double) override { return vertices_; }
   int most_drag_stages() const override;
   void add_forces(const InteractionStep& step) override;
-  void constrain(const InteractionStep& step) override;
-  void tell_held(const InteractionStep& step, HeldRows& held) const override;
+  void declare(const InteractionStep& step, StepRows& rows, int round) override;
+  void solved(const InteractionStep& step, const StepRows& rows) override;
   void moved(const InteractionStep& step) override;
   double squared_frequency() const override;
 
@@ -48,6 +48,7 @@ class GrabSpring final : public Interaction {
   double stiffness_ = 0.0, damping_ = 0.0, squared_frequency_ = 0.0;
   Hold how_ = Hold::springs;
   Vec3d way_{}, force_{};
+  std::size_t row_count_ = 0;  // in this step
   Vec3d gone_{};        // of the way where it is bonded [m] …
   double speed_ = 0.0;  // … and how fast it goes on [m/s]
 };

@@ -64,7 +64,8 @@ class Blade final : public Instrument {
   void body_changed(const BodyView& body, std::span<const std::uint32_t> origins) override;
   std::span<const std::uint32_t> reach(double time, double h) override;
   std::optional<std::span<const std::uint32_t>> keeps() override { return reached_; }
-  void constrain(const InteractionStep& step) override;
+  void declare(const InteractionStep& step, StepRows& rows, int round) override;
+  void solved(const InteractionStep& step, const StepRows& rows) override;
   void between_steps(Simulation& simulation) override;
   bool changes_body() const override { return true; }
   void moved(const InteractionStep& step) override;
@@ -79,7 +80,8 @@ class Blade final : public Instrument {
   struct Saved;
   void cut(double time, const BladeEdge& to);
   const Tet& vertices_of(const EdgePiece& piece) const { return mesh_->tets[piece.tet]; }
-  void resist(const InteractionStep& step, const EdgePiece& piece, const Vec3d& velocity, const Vec3d& along);
+  void add_disc(const InteractionStep& step, const EdgePiece& piece, const BladeEdge& before, const BladeEdge& after,
+                RowGroup& rows) const;
   LongPieces long_pieces(const InteractionStep& step, const BladeEdge& before, const BladeEdge& after) const;
   Vec3d last_force(const EdgePiece& piece) const;
   void solve_long(const InteractionStep& step, const LongPieces& r);

@@ -97,9 +97,8 @@ class Container final : public Interaction {
   void state_set(std::span<const Vec3d> displacement) override;
   std::string refuses_long_steps() const override { return {}; }
   void set_long_steps(bool are_long) override;
-  void add_forces(const InteractionStep& step) override;
-  void constrain(const InteractionStep& step) override;
-  void tell_held(const InteractionStep& step, HeldRows& held) const override;
+  void declare(const InteractionStep& step, StepRows& rows, int round) override;
+  void solved(const InteractionStep& step, const StepRows& rows) override;
   int most_drag_stages() const override;
   void moved(const InteractionStep& step) override;
   bool add_contact(std::span<Vec3d> force, std::span<double> pressing) const override;

@@ -173,13 +173,13 @@ class Instrument : public Interaction, protected InstrumentState {
   /// is of static storage.
   virtual std::span<const InstrumentColumn> own_columns() const;
   /// Moves the pose to the end of the step; the previous one is in `before_`. To be called once a step, in reach() or
-  /// first in constrain().
+  /// first in declare().
   void drive(const InteractionStep& step);
   /// Why its driver does not support long steps, for refuses_long_steps().
   std::string driver_refuses_long_steps() const;
   /// Begins a step; to be called first in reach().
   void begin_step();
-  /// In constrain(), by those that drive() in reach(): moves the pose to where a driver that yields is tried.
+  /// In declare(), by those that drive() in reach(): moves the pose to where a driver that yields is tried.
   void take_trial();
   /// Where a driver that yields would end without the tissue, in a long step; after drive().
   std::optional<Vec3d> free_end() const;

@@ -2,13 +2,13 @@
 // membranes. Programs may derive their own.
 //
 //   a step from t to t + h, with v₋ and v₊ the velocities before and after t:
-//     reach ─▶ tissue forces at u(t) ─▶ add_forces ─▶ v₊ as if free, then with motions ─▶ constrain ─▶ u(t+h) ─▶ moved
-//     ─▶ the step is made ─▶ between_steps
+//     reach ─▶ tissue forces at u(t) ─▶ add_forces ─▶ v₊ as if free, then with motions ─▶ declare ─▶ solver ─▶ solved
+//     ─▶ u(t+h) ─▶ moved ─▶ the step is made ─▶ between_steps
 //
 // An interaction names the vertices it may act on, its active vertices; they are held in double. Forces that follow
 // from the state alone (membranes, springs) are added to the tissue's own; conditions at the end of the step (no
-// penetration, friction, a path through the tissue) are enforced on velocities, by impulses. Interactions act one after
-// the other, in the order in which they were attached. Between steps they may change the body: cut it, remove tets.
+// penetration, friction, a path through the tissue) are declared as rows (contact/step_rows.h), and one solver finds the
+// impulses that meet those of all interactions together (docs/contact.md). Between steps they may change the body: cut it, remove tets.
 #pragma once
 
 #include <array>
@@ -21,28 +21,16 @@
 #include <string>
 #include <vector>
 
+#include "glisson/contact/step_rows.h"
 #include "glisson/math.h"
 #include "glisson/mesh.h"
+#include "glisson/simulation/active_vertex.h"
 #include "glisson/simulation/held_rows.h"
 
 namespace glisson {
 
 class Archive;
 class Simulation;
-
-/// An active vertex: one that a support, motion or interaction acts on.
-struct ActiveVertex {
-  std::uint32_t vertex = 0;
-  Vec3d elastic, viscous;  ///< forces of the tissue at time t [N]
-  Vec3d displacement;      ///< [m]
-  Vec3d velocity;          ///< [m/s]
-};
-
-/// A vertex that an interaction holds still, see Interaction::rests().
-struct RestingVertex {
-  std::uint32_t vertex = 0;
-  Vec3d force;  ///< of tissue and gravity on it at time t [N]
-};
 
 /// Stiffness of a vertex, the same in all directions [N/m].
 struct VertexStiffness {
@@ -117,7 +105,7 @@ class InteractionStep {
 
   double time = 0.0;                 ///< t: the step goes from t to t + h [s]
   double h = 0.0;                    ///< [s]
-  std::span<ActiveVertex> vertices;  ///< ascending by vertex; `velocity` is v₋ in add_forces, v₊ in constrain
+  std::span<ActiveVertex> vertices;  ///< ascending by vertex; `velocity` is v₋ in add_forces, v₊ in declare and solved
   std::span<const std::uint32_t> place_of;  ///< per vertex of the mesh: its place in `vertices`, or kNowhere
   std::span<const Vec3d> rest;              ///< per vertex of the mesh: rest position [m]
   /// Vertices that interactions hold at rest, ascending by vertex; they have no place.
@@ -144,10 +132,9 @@ class InteractionStep {
     impulses[place] += impulse;
   }
 
-  /// Records the impulse of a tool on the vertex at a place in the energy ledger. Call it in constrain(), once for each impulse
-  /// passed to push(). The work of the tool is J·(V₋ + V₊)/2, the tissue receives J·(v₋ + v₊)/2 of it, and the difference goes
-  /// to the sink. An impulse that is not recorded counts as that of a tool that moves with the tissue. No cost if energies are
-  /// not tracked.
+  /// Records the impulse of a tool on the vertex at a place in the energy ledger. The solver calls it for all rows. The work of
+  /// the tool is J·(V₋ + V₊)/2, the tissue receives J·(v₋ + v₊)/2 of it, and the difference goes to the sink. An impulse that is
+  /// not recorded counts as that of a tool that moves with the tissue. No cost if energies are not tracked.
   void book(WorkSink sink, std::size_t place, const Vec3d& impulse, const ToolVelocity& tool = {}) const {
     if (interface_book == nullptr) return;
     InterfaceBook::Page& page = interface_book->pages[static_cast<std::size_t>(sink)];
@@ -195,15 +182,17 @@ class Interaction {
 
   /// Adds forces that follow from the present state to `elastic` or `viscous` of active vertices.
   virtual void add_forces(const InteractionStep&) {}
-  /// Corrects v₊ by impulses.
-  virtual void constrain(const InteractionStep&) {}
-  /// In a long step, after constrain(): whether what it has found takes itself elsewhere, as a tool that a force moves. Its impulses are
-  /// then taken back, its state is again that after reach(), and constrain() is called anew.
+  /// Declares what is to hold at the end of the step. Called with round = 0, and again after each time that all rows have been
+  /// solved, as long as some interaction declares more: what has come to be in reach by the impulses so far. Velocities in round 0
+  /// are v₊ without any tool.
+  virtual void declare(const InteractionStep&, StepRows&, int /*round*/) {}
+  /// All rows have been solved: their impulses are in the velocities.
+  virtual void solved(const InteractionStep&, const StepRows&) {}
+  /// In a long step, after solved(): whether what it has found takes itself elsewhere, as a tool that a force moves. Its impulses are
+  /// then taken back, its state is again that after reach(), and declare() is called anew.
   virtual bool tries_again() { return false; }
-  /// Adds the rows that impulses held in this step. The stages of the viscous force hold them, too, in the next step
-  /// (SimulationOptions::drag_stages). Called after all constrain(), only with several stages; velocities are those at the end.
-  virtual void tell_held(const InteractionStep&, HeldRows&) const {}
-  /// The largest SimulationOptions::drag_stages allowed with it: kMostDragStagesBesideOthers, unless overridden with tell_held().
+  /// The largest SimulationOptions::drag_stages allowed with it: kMostDragStagesBesideOthers, unless overridden. The stages hold what
+  /// its rows held in the last step, those of discs and given impulses apart.
   virtual int most_drag_stages() const;
   /// The step has been made: displacements are those at t + h.
   virtual void moved(const InteractionStep&) {}
@@ -219,14 +208,14 @@ class Interaction {
   virtual void add_forces_at(std::span<const Vec3d> /*displacement*/, std::span<Vec3d> /*force*/) {}
   /// Adds the stiffness of these forces at the displacements of the last add_forces_at().
   virtual void add_stiffness(std::vector<TriangleStiffness>&) const {}
-  /// Whether it acts by constrain() in long steps; otherwise by add_forces_at() alone.
+  /// Whether it declares rows in long steps; otherwise it acts by add_forces_at() alone.
   virtual bool constrains_long_steps() const { return true; }
   /// In a long step, before moved(), with displacements and velocities at its end: whether an event such as a tear or a puncture
   /// happened within it, whose time is to be found. The step is then undone and repeated in shorter parts.
   virtual bool overshoots(const InteractionStep&) { return false; }
 
   /// The reason why it does not support the long steps of `implicit` and `quasi_static`, as the end of a sentence with a remedy;
-  /// empty if it does. Its forces are then those at the end of the step, and constrain() is called in every iteration of Newton's
+  /// empty if it does. Its forces are then those at the end of the step, and declare() is called in every iteration of Newton's
   /// method, several times if several interactions act, always from the state after reach().
   virtual std::string refuses_long_steps() const;
   /// Called before `attached`: whether its steps will be long.

@@ -44,7 +44,7 @@ void StagedDrag::end(std::span<const ActiveVertex> active, const ActiveKick& kic
     const ActiveKick::Kicked& at = kick.all()[k];
     outer_.push_back(active[k].elastic + active[k].viscous - tissue_[k] + at.load + at.contact);
   }
-  interactions.tell_held(rows_);
+  interactions.list_held(rows_);
 }
 
 void StagedDrag::follow(std::span<const std::uint32_t> before, std::span<const ActiveVertex> active) {

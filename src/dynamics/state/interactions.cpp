@@ -136,24 +136,25 @@ void Interactions::begin(double time, double h, std::span<ActiveVertex> active, 
 }
 
 void Interactions::add_forces() {
+  if (!all_.empty()) solver_.begin(step_);
   for (const std::shared_ptr<Interaction>& x : all_) x->add_forces(step_);
 }
 
 void Interactions::constrain(std::span<const Vec3d> mobility) {
   step_.mobility = mobility;
   step_.compliance = nullptr;
-  for (const std::shared_ptr<Interaction>& x : all_) x->constrain(step_);
+  solver_.solve(all_, step_);
 }
 
 void Interactions::constrain(std::size_t interaction, StepCompliance& compliance) {
   step_.mobility = {};
   step_.compliance = &compliance;
-  all_[interaction]->constrain(step_);
+  solver_.solve_alone(all_, interaction, step_);
 }
 
-void Interactions::tell_held(HeldRows& held) const {
+void Interactions::list_held(HeldRows& held) const {
   held.clear();
-  for (const std::shared_ptr<Interaction>& x : all_) x->tell_held(step_, held);
+  if (!all_.empty()) solver_.list_held(step_, held);
 }
 
 void Interactions::clear_impulses() {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "contact/step_solver.h"
 #include "dynamics/state/constraints.h"
 #include "glisson/archive.h"
 #include "glisson/simulation/interaction.h"
@@ -62,7 +63,7 @@ class Interactions {
   Found found() const { return {impulses_, book_}; }
   void go_back(const Found& found);
   /// What impulses held in this step.
-  void tell_held(HeldRows& held) const;
+  void list_held(HeldRows& held) const;
   void clear_impulses();
   /// What each has of its own (Interaction::save_state), and takes them back there.
   using Saved = std::vector<std::shared_ptr<const void>>;
@@ -106,6 +107,7 @@ class Interactions {
   std::vector<std::uint32_t> place_of_, newcomers_;
   std::vector<Vec3d> impulses_;
   InteractionStep step_;
+  StepSolver solver_;
   InterfaceBook book_;
 };
 

@@ -1,6 +1,6 @@
 // contact.cpp — a rigid tool against the surface: which points, then their impulses, then what the tool feels.
 //
-//   reach: pose at t + h ─▶ patches it might touch        constrain: vertices ─▶ solve ─▶ triangles ─▶ solve ─▶ forces
+//   reach: pose at t + h ─▶ patches it might touch        declare: vertices ─▶ solver ─▶ triangles ─▶ solver ─▶ solved: forces
 //
 // The driver is asked in reach(), before the step, so that the way the tool will go is known when vertices are named.
 #include "glisson/instruments/contact.h"
@@ -132,28 +132,29 @@ std::span<const std::uint32_t> ContactTool::reach(double time, double h) {
 std::optional<std::span<const std::uint32_t>> ContactTool::keeps() { return state_->reach.keeps(); }
 
 /// Begins a short step, or an iteration of a long one: several tools act in turn in it, and are solved for more than once.
-void ContactTool::add_forces(const InteractionStep& step) {
+void ContactTool::add_forces(const InteractionStep&) {
   State& s = *state_;
-  s.books.begin(step);
   s.unsettled += s.settled ? 0 : 1;
   s.settled = true;
 }
 
-void ContactTool::constrain(const InteractionStep& step) {
+void ContactTool::declare(const InteractionStep& step, StepRows& rows, int round) {
   State& s = *state_;
-  forces_ = {};
-  s.bond_impulses.clear();
-  if (step.compliance != nullptr) {
+  if (step.compliance == nullptr) return s.declare_short(step, rows.group(), round);
+  if (round == 0) {
     take_trial();
     if (s.solid.after.position != pose_.position) s.unsettled = 0;
     s.solid.after = pose_;
-    s.effort.sweeps = s.solve_long(step);
-  } else {
-    s.solve_short(step);
   }
-  if (s.options.bonded) s.bond(step, forces_);
-  s.collect(step, forces_);
-  if (step.interface_book != nullptr) book(step);
+  s.declare_long(step, rows.group(), round);
+}
+
+void ContactTool::solved(const InteractionStep& step, const StepRows& rows) {
+  State& s = *state_;
+  forces_ = {};
+  s.found(step, rows.group());
+  if (s.options.bonded) s.bond(step, rows.group(), forces_);
+  s.collect(step, rows.group(), forces_);
 
   const double time = forces_at_end() ? step.time + step.h : step.time;
   if (touches()) {
@@ -165,28 +166,7 @@ void ContactTool::constrain(const InteractionStep& step) {
   }
 }
 
-void ContactTool::tell_held(const InteractionStep& step, HeldRows& held) const {
-  for (const ContactRow& row : state_->rows) glisson::tell_held(row, step, held);
-  for (const auto& [place, impulse] : state_->bond_impulses) held.add_vertex(step.vertices[place].vertex);
-}
-
 int ContactTool::most_drag_stages() const { return kMostDragStagesBesideOthers; }
-
-/// Tells the ledger of all impulses: what presses is contact's, what rubs friction's.
-void ContactTool::book(const InteractionStep& step) const {
-  for (const ContactRow& row : state_->rows) {
-    if (row.pressing == 0.0 && row.rubbing == Vec3d{}) continue;
-    const bool at_end = forces_at_end();
-    const ToolVelocity tool = velocity_at(at_end ? pose_.to_space(end_of(row, step)) : row.origin);
-    for (std::uint32_t i = 0; i < row.count; ++i) {
-      step.book(WorkSink::contact, row.places[i], row.normal * (row.pressing * row.weights[i]), tool);
-      step.book(WorkSink::friction, row.places[i], row.rubbing * row.weights[i], tool);
-    }
-  }
-  for (const auto& [place, impulse] : state_->bond_impulses) {
-    step.book(WorkSink::contact, place, impulse, velocity_at(step.position(place)));
-  }
-}
 
 void ContactTool::moved(const InteractionStep& step) {
   state_->reach.look(step);
@@ -196,7 +176,7 @@ void ContactTool::moved(const InteractionStep& step) {
 void ContactTool::archive(Archive& ar) {
   State& s = *state_;
   archive_motion(ar);
-  ar(s.in_contact, s.begun, s.last_touch, s.last_depth, s.books, s.last_h, s.solid.before, s.found_inside);
+  ar(s.in_contact, s.begun, s.last_touch, s.last_depth, s.account, s.last_h, s.solid.before, s.found_inside);
   ar(s.bonds, s.last_pressing, s.last_bonds, s.reach);
   const std::size_t vertices = s.reach.surface().body_vertices();
   for (const auto& [v, place] : s.bonds) ar.check(v < vertices);
@@ -219,7 +199,7 @@ struct SavedContact {
 std::shared_ptr<const void> ContactTool::save_state() const {
   const State& s = *state_;
   return std::make_shared<const SavedContact>(
-      SavedContact{save_motion(), s, s.reach.seen(), s.solid.before, s.books.taken()});
+      SavedContact{save_motion(), s, s.reach.seen(), s.solid.before, s.account.taken()});
 }
 
 void ContactTool::load_state(const std::shared_ptr<const void>& state, const BodyView* other_body) {
@@ -230,7 +210,7 @@ void ContactTool::load_state(const std::shared_ptr<const void>& state, const Bod
   if (other_body != nullptr) s.reach.set_body(*other_body);
   s.reach.set_seen(saved.seen);
   s.solid.before = saved.before;
-  s.books.set_taken(saved.taken);
+  s.account.set_taken(saved.taken);
 }
 
 }  // namespace glisson

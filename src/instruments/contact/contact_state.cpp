@@ -18,8 +18,7 @@ constexpr double kMostAllowed = 0.1;  // … and so much of the thickness
 constexpr double kDeeper = 0.02;      // of that: a point so much deeper than those held is held, too …
 constexpr double kLongDeeper = 0.1;   // … in a long step, where points that are close give each other their load …
 constexpr std::uint32_t kMostPoints = 3;  // … up to so many of a triangle
-constexpr int kMostRounds = 12;           // of looking for points that come inside in a long step …
-constexpr int kMostShortRounds = 3;       // … and for those of triangles in a short one
+constexpr int kMostLooks = 3;             // for points of triangles, in a short step
 constexpr int kMostUnsettled = 5;         // iterations of a long step whose sweeps come to their limit
 constexpr double kStride = 0.25;          // of the thickness: a fast triangle is looked at so often on its way
 constexpr int kMostStrides = 200;
@@ -48,7 +47,7 @@ void ContactTool::State::measure(std::size_t i, const InteractionStep& step) {
 }
 
 void ContactTool::State::begin_vertices(const InteractionStep&) {
-  rows.clear(), effort = {};
+  effort = {};
   const std::size_t count = reach.vertices().size();
   starts.resize(count), ends.resize(count), at_ends.resize(count);
   pressed.assign(count, 0.0), exerted.assign(count, Vec3d{}), has_row.assign(count, 0), moves.assign(count, 0);
@@ -57,14 +56,14 @@ void ContactTool::State::begin_vertices(const InteractionStep&) {
 }
 
 void ContactTool::State::bear_nothing() {
-  rows.clear(), pressed.clear(), exerted.clear();
+  pressed.clear(), exerted.clear();
   effort = {};
 }
 
 /// Finds the vertices that meet the tool and have no row yet. @return how many
-std::size_t ContactTool::State::add_vertices(const InteractionStep& step) {
+std::size_t ContactTool::State::add_vertices(const InteractionStep& step, RowGroup& rows) {
   const std::span<const std::uint32_t> mine = reach.vertices();
-  const std::size_t before = rows.size();
+  const std::size_t before = rows.points.size();
   for (std::uint32_t i = 0; i < mine.size(); ++i) {
     measure(i, step);
     if (has_row[i] != 0) continue;
@@ -74,11 +73,11 @@ std::size_t ContactTool::State::add_vertices(const InteractionStep& step) {
     row.places[0] = step.place_of[mine[i]];
     row.solid = &solid;
     found_inside.mark(row, mine[i], 0, starts[i], begun);
-    if (prepare(row, step)) rows.push_back(row), touch(i), has_row[i] = 1;
+    if (prepare(row, step)) rows.points.push_back(row), touch(i), has_row[i] = 1;
     found_inside.settle(row, mine[i], 0);
   }
   begun = true;
-  return rows.size() - before;
+  return rows.points.size() - before;
 }
 
 /// A row moves the vertex.
@@ -88,39 +87,44 @@ void ContactTool::State::touch(std::uint32_t i) {
 
 /// Vertices first, then triangles that are inside between them, then other points of these: held at one point alone a triangle under an edge
 /// would tilt, and be held at the next point only in the next step.
-void ContactTool::State::solve_short(const InteractionStep& step) {
-  begin_vertices(step);
-  add_vertices(step);
-  effort.vertices = rows.size();
-  if (!rows.empty()) effort.sweeps = books.solve(rows, step);
-  for (int round = 0; round < kMostShortRounds && solid.traits.presses_between; ++round) {
-    const std::size_t before = rows.size();
-    add_triangles(round > 0, step);
-    if (rows.size() == before) break;
-    begin_rows(before, step);
-    effort.sweeps += books.solve(rows, step);
+void ContactTool::State::declare_short(const InteractionStep& step, RowGroup& rows, int round) {
+  if (round == 0) {
+    begin_vertices(step);
+    looks = 0;
+    rows.account = &account;
+    for (const auto& [vertex, anchor] : bonds) {
+      const std::uint32_t place = step.place_of[vertex];
+      if (place == InteractionStep::kNowhere) continue;
+      const Vec3d x = step.position(place);
+      rows.holds.push_back({.place = place,
+                            .velocity = (solid.after.to_space(anchor) - x) * (1.0 / step.h),
+                            .tool = solid.velocity_at(x, step.h)});
+    }
   }
-  effort.triangles = rows.size() - effort.vertices;
-  effort.corrected = books.corrected();
-  books.close(rows, step);
+  const std::size_t fresh = round == 0 || rows.others_act ? add_vertices(step, rows) : 0;
+  effort.vertices += fresh;
+  if (fresh > 0 || !solid.traits.presses_between || looks == kMostLooks) return;
+  const std::size_t before = rows.points.size();
+  effort.triangles += add_triangles(looks > 0 && !rows.others_act, step, rows);
+  ++looks;
+  begin_rows(before, step, rows);
 }
 
 /// Rows of what is bonded: they move and are moved by all others in a long step.
-void ContactTool::State::add_bonds(const InteractionStep& step) {
+void ContactTool::State::add_bonds(const InteractionStep& step, RowGroup& rows) {
   for (const auto& [vertex, anchor] : bonds) {
     if (step.place_of[vertex] == InteractionStep::kNowhere) continue;
     ContactRow row;
     row.places[0] = step.place_of[vertex];
     row.solid = &solid;
     prepare_bond(row, anchor, step);
-    rows.push_back(row);
+    rows.points.push_back(row);
   }
 }
 
 /// Rows begin with what they had in the last iteration; in the first with the force of the last step, a triangle's all at its first point.
-/// Only when all rows have been found, as they look at where the free way ends.
-void ContactTool::State::begin_rows(std::size_t first, const InteractionStep& step) {
-  for (ContactRow& row : std::span(rows).subspan(first)) {
+void ContactTool::State::begin_rows(std::size_t first, const InteractionStep& step, RowGroup& rows) const {
+  for (ContactRow& row : std::span(rows.points).subspan(first)) {
     const Triangle key = key_of(row, step);
     if (!trial.empty()) {
       const auto known = trial.find(key);
@@ -131,84 +135,81 @@ void ContactTool::State::begin_rows(std::size_t first, const InteractionStep& st
     } else if (const auto last = last_pressing.find(key); last != last_pressing.end() && !row.again) {
       row.pressing = last->second * step.h;
     }
-    if (row.impulse() != Vec3d{}) push(row, step, row.impulse());
   }
 }
 
 /// Points of triangles that earlier iterations of this step have found: were they found anew in each, their rows would come and go, and
 /// iterations not end.
-void ContactTool::State::hold_again(const InteractionStep& step) {
+void ContactTool::State::hold_again(const InteractionStep& step, RowGroup& rows) {
   const std::span<const std::uint32_t> mine = reach.vertices();
   for (std::size_t k = 0; k < reach.triangles().size() && !trial.empty(); ++k) {
     const Triangle& t = reach.triangles()[k];
     const auto known = trial.find({mine[t[0]], mine[t[1]], mine[t[2]]});
     if (known == trial.end() || is_bonded_at(t)) continue;
     const double allowance = allowance_of(longest_of(t));
-    for (const BearingPoint& point : known->second) hold(k, point.weights, allowance, step);
+    for (const BearingPoint& point : known->second) hold(k, point.weights, allowance, step, rows);
   }
 }
 
 /// Holds a point of a triangle where the tool meets it.
 void ContactTool::State::hold(std::size_t triangle, const std::array<double, 3>& weights, double allowance,
-                              const InteractionStep& step) {
+                              const InteractionStep& step, RowGroup& rows) {
   const Triangle& t = reach.triangles()[triangle];
   HeldTriangle& h = held[triangle];
   ContactRow row;
   for (std::size_t i = 0; i < 3; ++i) row.places[i] = step.place_of[reach.vertices()[t[i]]];
   row.count = 3, row.solid = &solid, row.allowance = allowance, row.weights = weights, row.again = h.points > 0;
   if (!prepare(row, step)) return;
-  rows.push_back(row);
+  rows.points.push_back(row);
   ++h.points, h.level = std::min(h.level, row.level);
   for (const std::uint32_t i : t) touch(i);
 }
 
 /// All rows of a long step. Points move one another, so that those that come inside by it are looked for until there are
-/// none: vertices first, as in a short step. @return sweeps
-int ContactTool::State::solve_long(const InteractionStep& step) {
-  if (unsettled == kMostUnsettled) {
-    exert_again(step);
-    return effort.sweeps;
+/// none: vertices first, as in a short step.
+void ContactTool::State::declare_long(const InteractionStep& step, RowGroup& rows, int round) {
+  if (round == 0 && unsettled == kMostUnsettled) return exert_again(rows);
+  std::size_t before = rows.points.size();
+  if (round == 0) {
+    begin_vertices(step);
+    add_bonds(step, rows);
   }
-  begin_vertices(step);
-  int sweeps = 0, last = 0;
-  add_bonds(step);
-  add_vertices(step);
-  effort.vertices = rows.size();
-  if (solid.traits.presses_between) hold_again(step);
-  effort.triangles = rows.size() - effort.vertices;
-  std::size_t fresh = rows.size();
-  for (int round = 0; round < kMostRounds && (fresh > 0 || round == 0); ++round) {
-    begin_rows(rows.size() - fresh, step);
-    last = rows.empty() ? 0 : glisson::solve(rows, step);
-    sweeps += last;
-    step.compliance->settle(step.vertices);
-    fresh = add_vertices(step);
-    effort.vertices += fresh;
-    if (fresh > 0 || !solid.traits.presses_between) continue;
-    const std::size_t before = rows.size();
-    add_triangles(false, step);
-    fresh = rows.size() - before;
-    effort.triangles += fresh;
+  const std::size_t fresh = add_vertices(step, rows);
+  effort.vertices = round == 0 ? rows.points.size() : effort.vertices + fresh;
+  if (round == 0) {
+    if (solid.traits.presses_between) hold_again(step, rows);
+    effort.triangles = rows.points.size() - effort.vertices;
+    if (rows.points.empty() && solid.traits.presses_between) effort.triangles += add_triangles(false, step, rows);
+  } else if (fresh == 0 && solid.traits.presses_between) {
+    effort.triangles += add_triangles(false, step, rows);
   }
-  remember(step);
-  settled = last < kMostLongSweeps;
-  return sweeps;
+  begin_rows(before, step, rows);
 }
 
 /// The same impulses again. Points close to each other may go on giving their load to one another, while the force changes by some 1e-4 of
 /// itself: with forces that change no balance would be found. With these it is, and points are off by what the last sweep moved them.
-void ContactTool::State::exert_again(const InteractionStep& step) {
+void ContactTool::State::exert_again(RowGroup& rows) {
   pressed.assign(pressed.size(), 0.0), exerted.assign(exerted.size(), Vec3d{});
-  for (const ContactRow& row : rows) push(row, step, row.impulse());
-  step.compliance->settle(step.vertices);
+  rows.points.swap(rows.earlier);
+  for (ContactRow& row : rows.points) row.is_new = true;
+  rows.has_impulses = true;
+}
+
+/// What solving a step took, and what it leaves for the next iteration of a long one.
+void ContactTool::State::found(const InteractionStep& step, const RowGroup& rows) {
+  if (rows.has_impulses) return;
+  effort.sweeps = rows.sweeps, effort.corrected = rows.corrected;
+  if (step.compliance == nullptr) return;
+  remember(step, rows);
+  settled = rows.last_sweeps < kMostLongSweeps;
 }
 
 /// Keeps what the rows of an iteration had for the next. Points that were not met this time stay.
-void ContactTool::State::remember(const InteractionStep& step) {
+void ContactTool::State::remember(const InteractionStep& step, const RowGroup& rows) {
   for (auto& [key, points] : trial) {
     for (BearingPoint& point : points) point.pressing = 0.0, point.rubbing = {};
   }
-  for (const ContactRow& row : rows) {
+  for (const ContactRow& row : rows.points) {
     std::vector<BearingPoint>& points = trial[key_of(row, step)];
     BearingPoint* point = find(points, row.weights);
     if (point == nullptr) point = &points.emplace_back(BearingPoint{.weights = row.weights});
@@ -234,16 +235,17 @@ void ContactTool::State::require_outside(const BodyView& body, const Pose& pose,
 }
 
 /// Looks for triangles that the tool enters between their corners, deeper than where they are held already.
-/// @param moved  only among those that rows move
-void ContactTool::State::add_triangles(bool moved, const InteractionStep& step) {
+/// @param moved  only among those that rows move @return how many points it adds
+std::size_t ContactTool::State::add_triangles(bool moved, const InteractionStep& step, RowGroup& rows) {
   const bool is_long = step.compliance != nullptr;
-  if (!is_long) {  // in a long step all have just been measured
+  const std::size_t before = rows.points.size();
+  if (!is_long && !rows.others_act) {  // otherwise all have just been measured
     for (const std::uint32_t i : touched) measure(i, step);
   }
   for (std::size_t k = 0; k < reach.triangles().size(); ++k) {
     const Triangle& t = reach.triangles()[k];
     if (moved && (moves[t[0]] | moves[t[1]] | moves[t[2]]) == 0) continue;
-    if (held[k].points >= kMostPoints || (is_long && is_bonded_at(t))) continue;
+    if (held[k].points >= kMostPoints || is_bonded_at(t)) continue;
     const double longest = longest_of(t);
     double farthest = 0.0;
     for (const std::uint32_t i : t) {
@@ -256,8 +258,9 @@ void ContactTool::State::add_triangles(bool moved, const InteractionStep& step) 
     const double allowance = allowance_of(longest);
     const double strides = std::ceil(std::sqrt(farthest) / (kStride * solid.traits.thickness));
     if (strides <= 1.0 && least_of({ends[t[0]], ends[t[1]], ends[t[2]]}) > -allowance) continue;
-    add_triangle(k, static_cast<int>(std::clamp(strides, 1.0, double(kMostStrides))), allowance, step);
+    add_triangle(k, static_cast<int>(std::clamp(strides, 1.0, double(kMostStrides))), allowance, step, rows);
   }
+  return rows.points.size() - before;
 }
 
 /// The longest edge of a triangle at the end of the step, squared [m²].
@@ -275,8 +278,7 @@ double ContactTool::State::allowance_of(double longest) const {
   return std::min(kAllowance * std::sqrt(longest), kMostAllowed * solid.traits.thickness);
 }
 
-/// Whether a corner is bonded. In a long step all rows hold at once: such a triangle would widen the tool by its free corners, which in a
-/// short step the bonds undo for the most part.
+/// Whether a corner is bonded. All rows hold at once: such a triangle would widen the tool by its free corners.
 bool ContactTool::State::is_bonded_at(const Triangle& corners) const {
   return std::any_of(corners.begin(), corners.end(),
                      [&](std::uint32_t i) { return bonds.count(reach.vertices()[i]) != 0; });
@@ -291,8 +293,8 @@ double ContactTool::State::least_of(const std::array<Vec3d, 3>& x) const {
 }
 
 /// Holds a triangle out that comes to be inside between its corners, at its deepest point; a fast one where it first enters.
-void ContactTool::State::add_triangle(std::size_t triangle, int strides, double allowance,
-                                      const InteractionStep& step) {
+void ContactTool::State::add_triangle(std::size_t triangle, int strides, double allowance, const InteractionStep& step,
+                                      RowGroup& rows) {
   const Triangle& t = reach.triangles()[triangle];
   const double deeper = step.compliance != nullptr ? kLongDeeper : kDeeper;
   const double let = held[triangle].points > 0 ? (1.0 + deeper) * allowance - held[triangle].level : allowance;
@@ -306,7 +308,7 @@ void ContactTool::State::add_triangle(std::size_t triangle, int strides, double 
     }
     const std::array<double, 3> weights = deepest(options.shape, at, depth);
     if (depth > -let || depth > corner - solid.tolerance()) continue;
-    hold(triangle, weights, allowance, step);
+    hold(triangle, weights, allowance, step, rows);
     return;
   }
 }
@@ -322,22 +324,18 @@ void ContactTool::State::bond_first(const BodyView& body, const Pose& pose) {
   }
 }
 
-void ContactTool::State::bond(const InteractionStep& step, ToolForces& forces) {
+void ContactTool::State::bond(const InteractionStep& step, const RowGroup& rows, ToolForces& forces) {
+  auto held_row = rows.holds.begin();
   for (const auto& [vertex, anchor] : bonds) {
     const std::uint32_t place = step.place_of[vertex];
     if (place == InteractionStep::kNowhere || step.compliance != nullptr) continue;
-    const Vec3d x = step.position(place);
-    const Vec3d wanted = (solid.after.to_space(anchor) - x) * (1.0 / step.h);
-    const Vec3d impulse = stopping(step, place, wanted);
-    step.push(place, impulse);
-    bond_impulses.emplace_back(place, impulse);
-    const Vec3d n = solid.after.axes * distance_to(options.shape, anchor).normal;
+    const Vec3d impulse = (held_row++)->impulse, n = solid.after.axes * distance_to(options.shape, anchor).normal;
     const Vec3d across = n * dot(impulse, n);
     forces.normal += across * (1.0 / step.h), forces.friction += (impulse - across) * (1.0 / step.h);
-    forces.torque += cross(x - solid.before.position, impulse) * (1.0 / step.h);
+    forces.torque += cross(step.position(place) - solid.before.position, impulse) * (1.0 / step.h);
     bear(vertex, dot(impulse, n), impulse);
   }
-  for (const ContactRow& row : rows) {
+  for (const ContactRow& row : rows.points) {
     if (row.count == 1 && row.pressing > 0.0 && !row.bonded) {
       bonds[step.vertices[row.places[0]].vertex] = end_of(row, step);
     }
@@ -352,11 +350,11 @@ void ContactTool::State::bear(std::uint32_t vertex, double pressing, const Vec3d
   pressed[place] += pressing, exerted[place] += impulse;
 }
 
-void ContactTool::State::collect(const InteractionStep& step, ToolForces& forces) {
+void ContactTool::State::collect(const InteractionStep& step, const RowGroup& rows, ToolForces& forces) {
   const double rate = 1.0 / step.h;
   const bool is_long = step.compliance != nullptr;
   last_pressing.clear(), last_bonds.clear();
-  for (const ContactRow& row : rows) {
+  for (const ContactRow& row : rows.points) {
     if (row.bonded) {
       last_bonds[step.vertices[row.places[0]].vertex] = row.impulse() * rate;
     } else if ((row.count == 3 || is_long) && row.pressing > 0.0) {

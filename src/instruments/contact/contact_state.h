@@ -4,9 +4,10 @@
 #include <map>
 #include <vector>
 
-#include "instruments/contact/contact_books.h"
-#include "instruments/contact/contact_reach.h"
-#include "instruments/contact/contact_rows.h"
+#include "contact/contact_reach.h"
+#include "contact/found_inside.h"
+#include "contact/row_group.h"
+#include "glisson/instruments/contact.h"
 
 namespace glisson {
 
@@ -46,46 +47,46 @@ struct ContactTool::State : ContactKept {
   ContactSolid solid;
   ContactReach reach;
 
-  std::vector<ContactRow> rows;     ///< of a long step: of its last iteration
   bool settled = true;              ///< the last sweeps of a long step did not come to their limit
   int unsettled = 0;                ///< iterations of it in which they did
   std::vector<Vec3d> starts, ends;  ///< per vertex of the reach, in the frame of the tool
   std::vector<double> at_ends;      ///< φ there
-  std::vector<std::pair<std::uint32_t, Vec3d>>
-      bond_impulses;                   ///< place at hand → impulse of its bond in this step [N s]
   std::vector<std::uint32_t> touched;  ///< vertices of the reach that rows move, as places there
   std::vector<Vec3d> exerted;          ///< per vertex of the reach: whole impulse in this step [N s]
   Effort effort{};
 
-  ContactBooks books;
+  WorkAccount account;
+  int looks = 0;  ///< for triangles, in this step
   std::map<Triangle, std::vector<BearingPoint>> trial;  ///< of a long step: what its iterations have found
   std::vector<char> has_row, moves;                     ///< per vertex of the reach: has a row of its own; is in a row
   std::vector<HeldTriangle> held;                       ///< per triangle of the reach
 
   void bear_nothing();
   void begin_vertices(const InteractionStep& step);
-  std::size_t add_vertices(const InteractionStep& step);
-  void solve_short(const InteractionStep& step);
-  int solve_long(const InteractionStep& step);
-  void add_bonds(const InteractionStep& step);
-  void begin_rows(std::size_t first, const InteractionStep& step);
+  std::size_t add_vertices(const InteractionStep& step, RowGroup& rows);
+  void declare_short(const InteractionStep& step, RowGroup& rows, int round);
+  void declare_long(const InteractionStep& step, RowGroup& rows, int round);
+  void add_bonds(const InteractionStep& step, RowGroup& rows);
+  void begin_rows(std::size_t first, const InteractionStep& step, RowGroup& rows) const;
   void touch(std::uint32_t i);
-  void hold_again(const InteractionStep& step);
-  void hold(std::size_t triangle, const std::array<double, 3>& weights, double allowance, const InteractionStep& step);
-  void remember(const InteractionStep& step);
-  void exert_again(const InteractionStep& step);
+  void hold_again(const InteractionStep& step, RowGroup& rows);
+  void hold(std::size_t triangle, const std::array<double, 3>& weights, double allowance, const InteractionStep& step,
+            RowGroup& rows);
+  void remember(const InteractionStep& step, const RowGroup& rows);
+  void exert_again(RowGroup& rows);
+  void found(const InteractionStep& step, const RowGroup& rows);
   void require_outside(const BodyView& body, const Pose& pose, const Vec3d& direction) const;
   void measure(std::size_t i, const InteractionStep& step);
   double least_of(const std::array<Vec3d, 3>& corners) const;
   void bear(std::uint32_t vertex, double pressing, const Vec3d& impulse);
-  void add_triangles(bool moved, const InteractionStep& step);
-  void add_triangle(std::size_t triangle, int strides, double allowance, const InteractionStep& step);
+  std::size_t add_triangles(bool moved, const InteractionStep& step, RowGroup& rows);
+  void add_triangle(std::size_t triangle, int strides, double allowance, const InteractionStep& step, RowGroup& rows);
   double longest_of(const Triangle& corners) const;
   double allowance_of(double longest) const;
   bool is_bonded_at(const Triangle& corners) const;
   void bond_first(const BodyView& body, const Pose& pose);
-  void bond(const InteractionStep& step, ToolForces& forces);
-  void collect(const InteractionStep& step, ToolForces& forces);
+  void bond(const InteractionStep& step, const RowGroup& rows, ToolForces& forces);
+  void collect(const InteractionStep& step, const RowGroup& rows, ToolForces& forces);
   void weigh(const InteractionStep& step);
 };
 

@@ -5,12 +5,12 @@
 #include <stdexcept>
 
 #include "base/require_fields.h"
+#include "contact/row_group.h"
 #include "glisson/archive.h"
 
 namespace glisson {
 namespace {
 
-constexpr int kSweeps = 3;           ///< over the pieces of the edge, which share vertices
 constexpr double kMostChange = 0.5;  ///< of the longer: by how much the length in tissue changes in a long step
 
 double length_of(std::span<const EdgePiece> pieces) {
@@ -18,9 +18,6 @@ double length_of(std::span<const EdgePiece> pieces) {
   for (const EdgePiece& piece : pieces) sum += piece.length;
   return sum;
 }
-
-/// The part of a vector across a line.
-Vec3d across(const Vec3d& v, const Vec3d& line) { return v - line * (dot(line, v) / dot(line, line)); }
 
 }  // namespace
 
@@ -85,50 +82,43 @@ std::span<const std::uint32_t> Blade::reach(double, double) {
   return reached_;
 }
 
-/// Gives the tissue at a piece G l h along the edge's path through it, or as much less as takes it along.
-/// @param velocity  of the edge there
-void Blade::resist(const InteractionStep& step, const EdgePiece& piece, const Vec3d& velocity, const Vec3d& along) {
-  std::array<std::uint32_t, 4> places;
-  Vec3d tissue{};
-  double mobility = 0.0;
+/// A piece gives its tissue up to G l h along the edge's path through it, or as much less as takes it along.
+void Blade::add_disc(const InteractionStep& step, const EdgePiece& piece, const BladeEdge& before, const BladeEdge& after,
+                     RowGroup& rows) const {
+  DiscRow row;
+  Vec3d at{};
   for (std::size_t c = 0; c < 4; ++c) {
-    places[c] = step.place_of[vertices_of(piece)[c]];
-    if (places[c] == InteractionStep::kNowhere) return;
-    const double w = piece.weights[c];
-    tissue += step.vertices[places[c]].velocity * w;
-    const Vec3d& a = step.mobility[places[c]];
-    mobility += w * w * std::max({a.x, a.y, a.z});
+    row.places[c] = step.place_of[vertices_of(piece)[c]];
+    if (row.places[c] == InteractionStep::kNowhere) return;
+    const double w = row.weights[c] = piece.weights[c];
+    at += step.position(row.places[c]) * w;
+    const Vec3d& a = step.mobility[row.places[c]];
+    row.mobility += w * w * std::max({a.x, a.y, a.z});
+    row.tool[c] = velocity_at(step.position(row.places[c]));
   }
-  const Vec3d through = across(velocity - tissue, along);
-  const double speed = norm(through), most = options_.toughness * piece.length * step.h / kSweeps;
-  if (!(speed > 0.0)) return;
-  const double impulse = mobility > 0.0 ? std::min(most, speed / mobility) : most;
-  for (std::size_t c = 0; c < 4; ++c) {
-    const Vec3d push = through * (impulse * piece.weights[c] / speed);
-    step.push(places[c], push);
-    step.book(WorkSink::fracture, places[c], push, velocity_at(step.position(places[c])));
-    forces_.cutting += push * (1.0 / step.h);
-    forces_.torque += cross(step.position(places[c]) - pose_.position, push) * (1.0 / step.h);
-  }
+  row.line = after.to - after.from;
+  const double share = std::clamp(dot(at - before.from, row.line) / dot(row.line, row.line), 0.0, 1.0);
+  row.velocity = ((after.from - before.from) * (1.0 - share) + (after.to - before.to) * share) * (1.0 / step.h);
+  row.most = options_.toughness * piece.length * step.h;
+  rows.discs.push_back(row);
 }
 
-void Blade::constrain(const InteractionStep& step) {
+void Blade::declare(const InteractionStep& step, StepRows& rows, int round) {
+  if (round > 0) return;
   const BladeEdge before = edge();
   drive(step);
   const BladeEdge after = edge();
   forces_ = {};
   if (step.compliance != nullptr) return resist_long(step, before, after);
-  const Vec3d along = after.to - after.from;
-  const Vec3d from = (after.from - before.from) * (1.0 / step.h), to = (after.to - before.to) * (1.0 / step.h);
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    for (const EdgePiece& piece : pieces_) {
-      Vec3d at{};
-      for (std::size_t c = 0; c < 4; ++c) {
-        const std::uint32_t place = step.place_of[vertices_of(piece)[c]];
-        if (place != InteractionStep::kNowhere) at += step.position(place) * piece.weights[c];
-      }
-      const double share = std::clamp(dot(at - before.from, along) / dot(along, along), 0.0, 1.0);
-      resist(step, piece, from * (1.0 - share) + to * share, along);
+  for (const EdgePiece& piece : pieces_) add_disc(step, piece, before, after, rows.group());
+}
+
+void Blade::solved(const InteractionStep& step, const StepRows& rows) {
+  for (const DiscRow& row : rows.group().discs) {
+    for (std::size_t c = 0; c < 4; ++c) {
+      const Vec3d push = row.impulse * row.weights[c];
+      forces_.cutting += push * (1.0 / step.h);
+      forces_.torque += cross(step.position(row.places[c]) - pose_.position, push) * (1.0 / step.h);
     }
   }
 }

@@ -5,8 +5,9 @@
 #include <cmath>
 
 #include "base/require_fields.h"
-#include "base/two_across.h"
 #include "glisson/simulation/simulation.h"
+#include "contact/row_group.h"
+#include "instruments/needle/cantilever.h"
 #include "instruments/needle/needle_solver.h"
 
 namespace glisson {
@@ -15,7 +16,6 @@ namespace {
 constexpr double kPullBack = 0.2;  ///< share of an error of position that a step takes back
 constexpr double kSlack = 1e-3;    ///< compliance of a row over the mean of W: rows of one vertex would have no answer
 constexpr double kLeastMobility = 1e-30;  ///< [1/kg]: so that rows of held tissue have an answer, too
-constexpr double kHeldSlip = 0.01;        ///< of the speed of sticking: a row that slips by less is held
 constexpr double kReach = 1e-3;           ///< of the spacing: how far before the path's end the tip is there
 
 }  // namespace
@@ -88,27 +88,56 @@ void Needle::Solver::find_rows(const InteractionStep& step) {
   from_hand.push_back(s.options.length);
 }
 
-/// What the impulses across the needle have to make up for, per held row [m/s].
-Eigen::MatrixXd Needle::Solver::wanted_across(std::size_t held, const Vec3d& bevel, const Eigen::MatrixXd& W,
-                                              const Eigen::MatrixXd& C) const {
-  Eigen::MatrixXd wanted(static_cast<Eigen::Index>(held), 3);
-  for (std::size_t j = 0; j < held; ++j) {
-    const bool is_node = j < node.size();
-    const Vec3d bent = !is_node ? s.bend_tip : node[j] < s.bend.size() ? s.bend[node[j]] : Vec3d{};
-    const Vec3d off = across(all[j]->position - before, d);
-    Vec3d way = (off - bent) * (1.0 - kPullBack) - off - across(all[j]->velocity - needle_velocity(), d) * h;
-    const auto row = static_cast<Eigen::Index>(j);
-    if (all.size() > held) {  // the tip cuts: what the bevel bends, and what it does to the tissue
-      const auto tip = static_cast<Eigen::Index>(held);
-      way += bevel * (C(row, tip) + h * h * W(row, tip));
-    }
-    for (std::size_t axis = 0; axis < 3; ++axis) wanted(row, static_cast<Eigen::Index>(axis)) = way[axis] / h;
+/// The rows as a block of a short step: the tissue stays on the bent needle, all but a tip that cuts.
+shaft::Block Needle::Solver::block(const InteractionStep& step, const ToolVelocity& tool) {
+  const bool cuts = has_tip && s.tip_cuts;
+  shaft::Block b{.direction = d, .velocity = needle_velocity(), .tool = tool, .h = h, .held = all.size() - (cuts ? 1 : 0)};
+  for (const shaft::Row* row : all) b.add(*row);
+  b.friction = s.options.friction;
+  b.W = s.mobility.of(step, s.nodes, node, has_tip ? &s.tip : nullptr);
+  C = cantilever(from_hand, s.bending_stiffness());
+  b.compliance = C / (h * h);
+  const Vec3d bevel = cuts ? bevel_force() : Vec3d{};
+  const double again = s.step_h > 0.0 ? h / s.step_h : 0.0;  // the last step's forces are a good start
+  for (std::size_t j = 0; j < all.size(); ++j) {
+    const bool is_tip = j >= node.size();
+    if (j < b.held) b.off.push_back(off_by(j)), b.more.push_back(cuts ? bevel * bevel_moves(b, j) : Vec3d{});
+    b.sinks.push_back(sink_along(is_tip));
+    b.closing.push_back(is_tip ? tip_slip() : 0.0);
+    b.limits.push_back(limit_of(j));
+    b.along.push_back(again * (is_tip ? s.tip_along : s.along[node[j]]));
   }
-  return wanted;
+  b.across.resize(all.size());
+  if (cuts) b.across.back() = bevel * -h;
+  if (b.held > 0) {
+    const auto n = static_cast<Eigen::Index>(b.held);
+    b.slack = kSlack * b.W.topLeftCorner(n, n).diagonal().mean() + kLeastMobility;
+  }
+  return b;
+}
+
+/// What a step makes up for at a held row, beside velocities [m].
+Vec3d Needle::Solver::off_by(std::size_t j) const {
+  const bool is_node = j < node.size();
+  const Vec3d bent = !is_node ? s.bend_tip : node[j] < s.bend.size() ? s.bend[node[j]] : Vec3d{};
+  const Vec3d off = across(all[j]->position - before, d);
+  return (off - bent) * (1.0 - kPullBack) - off;
+}
+
+/// By how much a force on the bevel moves row j against the needle: what it bends, and what it does to the tissue [m/N].
+double Needle::Solver::bevel_moves(const shaft::Block& b, std::size_t j) const {
+  const auto row = static_cast<Eigen::Index>(j), tip = static_cast<Eigen::Index>(b.held);
+  return C(row, tip) + h * h * b.W(row, tip);
+}
+
+/// Where work goes along the needle: slip of the shaft is friction, a tip in tissue cuts.
+WorkSink Needle::Solver::sink_along(bool is_tip) const {
+  if (!is_tip) return WorkSink::friction;
+  return s.stage == NeedleStage::inside ? WorkSink::fracture : WorkSink::contact;
 }
 
 /// y = −C p/h at each row; the bevel's own load is among p.
-void Needle::Solver::bend(std::span<const Vec3d> impulse, const Eigen::MatrixXd& C) {
+void Needle::Solver::bend(std::span<const Vec3d> impulse) {
   s.bend.assign(s.nodes.size(), Vec3d{});
   s.bend_tip = {};
   for (std::size_t j = 0; j < all.size(); ++j) {
@@ -125,7 +154,7 @@ void Needle::Solver::bend(std::span<const Vec3d> impulse, const Eigen::MatrixXd&
 Vec3d Needle::Solver::free_end(std::span<const Vec3d> impulse) const {
   Vec3d y;
   for (std::size_t k = 0; k < all.size(); ++k) {
-    y -= impulse[k] * (shaft::cantilever(s.options.length, from_hand[k], s.bending_stiffness()) / h);
+    y -= impulse[k] * (cantilever(s.options.length, from_hand[k], s.bending_stiffness()) / h);
   }
   return y;
 }
@@ -135,26 +164,6 @@ Vec3d Needle::Solver::bevel_force() const {
   const Vec3d side = across(s.options.bevel_side, d);
   if (!(norm(side) > 0.0)) return {};
   return side * (s.options.bevel_share * s.tip_along / (s.step_h * norm(side)));
-}
-
-/// Impulses across the needle, per row: the tissue stays on the bent needle, all but a tip that cuts.
-std::vector<Vec3d> Needle::Solver::across_it(const Eigen::MatrixXd& W) {
-  const bool cuts = has_tip && s.tip_cuts;
-  const std::size_t held = all.size() - (cuts ? 1 : 0);
-  std::vector<Vec3d> impulse(all.size());
-  const Eigen::MatrixXd C = shaft::cantilever(from_hand, s.bending_stiffness());
-  const Vec3d bevel = cuts ? bevel_force() : Vec3d{};
-  if (cuts) impulse.back() = bevel * -h;
-  if (held > 0) {
-    const auto n = static_cast<Eigen::Index>(held);
-    Eigen::MatrixXd A = W.topLeftCorner(n, n) + C.topLeftCorner(n, n) / (h * h);
-    s.slack = kSlack * W.topLeftCorner(n, n).diagonal().mean() + kLeastMobility;
-    A.diagonal().array() += s.slack;
-    const Eigen::MatrixXd p = A.ldlt().solve(wanted_across(held, bevel, W, C));
-    for (Eigen::Index j = 0; j < n; ++j) impulse[static_cast<std::size_t>(j)] = across({p(j, 0), p(j, 1), p(j, 2)}, d);
-  }
-  bend(impulse, C);
-  return impulse;
 }
 
 /// A node stands for the shaft half way to its neighbours in the same stretch of tissue; the last one, where that reaches beyond the
@@ -186,24 +195,6 @@ double Needle::Solver::tip_slip() const {
   return std::max(tip_gap / h, slowed(speed, touching));
 }
 
-/// Impulses along the needle, per row.
-std::vector<double> Needle::Solver::along_it(const Eigen::MatrixXd& W) {
-  std::vector<double> speed, p;
-  std::vector<shaft::AxialLimit> limits;
-  s.lengths.clear();
-  const double again = s.step_h > 0.0 ? h / s.step_h : 0.0;  // the last step's forces are a good start
-  for (std::size_t j = 0; j < all.size(); ++j) {
-    const bool is_tip = j >= node.size();
-    speed.push_back(dot(needle_velocity() - all[j]->velocity, d));
-    if (is_tip) speed.back() -= tip_slip();
-    limits.push_back(limit_of(j));
-    s.lengths.push_back(limits.back().length);
-    p.push_back(again * (is_tip ? s.tip_along : s.along[node[j]]));
-  }
-  keep_along(p, shaft::solve_along(W, speed, limits, s.options.friction, h, p));
-  return p;
-}
-
 /// Keeps impulses along the needle, and what slips, for the next step.
 void Needle::Solver::keep_along(std::span<const double> p, std::span<const char> slips) {
   std::fill(s.along.begin(), s.along.end(), 0.0);
@@ -215,20 +206,13 @@ void Needle::Solver::keep_along(std::span<const double> p, std::span<const char>
   s.tip_cuts = has_tip && s.stage == NeedleStage::inside && slips.back() != 0;
 }
 
-/// Tells the ledger: slip of the shaft is friction, a tip in tissue cuts. Across, what the tissue does not take bends the needle,
-/// ½ Σ f·C f = −½ Σ f·y.
-void Needle::Solver::book(const InteractionStep& step, std::span<const Vec3d> sideways,
-                          std::span<const Vec3d> lengthways, const ToolVelocity& needle) const {
-  s.bending = 0.0;
+/// Energy of the bent needle, ½ Σ f·C f = −½ Σ f·y; the bevel's own load is among f.
+double Needle::Solver::bending_energy(std::span<const Vec3d> sideways) const {
+  double sum = 0.0;
   for (std::size_t j = 0; j < all.size(); ++j) {
-    const bool is_tip = j >= node.size();
-    const WorkSink along = !is_tip                          ? WorkSink::friction
-                           : s.stage == NeedleStage::inside ? WorkSink::fracture
-                                                            : WorkSink::contact;
-    shaft::book(step, along, *all[j], lengthways[j], needle);
-    shaft::book(step, WorkSink::contact, *all[j], sideways[j], needle);
-    s.bending -= 0.5 * dot(sideways[j], is_tip ? s.bend_tip : s.bend[node[j]]) / h;
+    sum -= 0.5 * dot(sideways[j], j >= node.size() ? s.bend_tip : s.bend[node[j]]) / h;
   }
+  return sum;
 }
 
 double Needle::tool_energy() const { return state_->bending; }
@@ -239,74 +223,50 @@ void Needle::add_forces(const InteractionStep& step) {
   if (s.stage != NeedleStage::outside && shaft::read(step, s.tip)) s.tip_velocity = s.tip.velocity;
 }
 
-void Needle::constrain(const InteractionStep& step) {
+void Needle::declare(const InteractionStep& step, StepRows& rows, int round) {
+  if (round > 0) return;
   drive(step);
+  State& s = *state_;
+  s.solver = std::make_unique<Solver>(
+      Solver{.s = s, .d = direction(), .before = before_.position, .after = pose_.position, .h = step.h});
+  s.solver->find_rows(step);
+  if (s.solver->all.empty()) return;
+  if (step.compliance == nullptr) {
+    rows.group().shaft = s.solver->block(step, velocity_at(before_.position));
+  } else {
+    s.solver->solve_long(step, velocity_at(before_.position));
+  }
+}
+
+void Needle::solved(const InteractionStep& step, const StepRows& rows) {
   forces_ = {};
   State& s = *state_;
-  Solver solver{.s = s, .d = direction(), .before = before_.position, .after = pose_.position, .h = step.h};
-  solver.find_rows(step);
-  s.acting = solver.node, s.from_hand = solver.from_hand;
-  if (solver.all.empty()) {
+  const std::unique_ptr<Solver> solver = std::move(s.solver);
+  if (solver->all.empty()) {
     s.forget_forces(step.h);
     return;
   }
-  Solver::Impulses p;
-  if (step.compliance != nullptr) {
-    p = solver.solve_long(step);
-  } else {
-    const Eigen::MatrixXd W = s.mobility.of(step, s.nodes, solver.node, solver.has_tip ? &s.tip : nullptr);
-    p.across = solver.across_it(W);
-    p.along = solver.along_it(W);
-  }
+  if (step.compliance == nullptr) solver->keep(*rows.group().shaft);
+  const Solver::Impulses& p = solver->found;
+  if (step.interface_book != nullptr) s.bending = solver->bending_energy(p.across);
   s.step_h = step.h;
-  const std::vector<Vec3d>& sideways = p.across;
-  std::vector<Vec3d> booked;
-  for (std::size_t j = 0; j < solver.all.size(); ++j) {
+  for (std::size_t j = 0; j < solver->all.size(); ++j) {
     const Vec3d lengthways = direction() * p.along[j];
-    if (step.compliance == nullptr) shaft::push(step, *solver.all[j], sideways[j] + lengthways);
-    if (step.interface_book != nullptr) booked.push_back(lengthways);
-    const bool is_tip = j >= solver.node.size();
-    forces_.normal += sideways[j] * (1.0 / step.h);
+    const bool is_tip = j >= solver->node.size();
+    forces_.normal += p.across[j] * (1.0 / step.h);
     (is_tip ? (s.stage == NeedleStage::inside ? forces_.cutting : forces_.normal) : forces_.friction) +=
         lengthways * (1.0 / step.h);
     const Vec3d at =
-        forces_at_end() ? solver.all[j]->position + solver.all[j]->velocity * step.h : solver.all[j]->position;
-    forces_.torque += cross(at - force_pose().position, (sideways[j] + lengthways) * (1.0 / step.h));
+        forces_at_end() ? solver->all[j]->position + solver->all[j]->velocity * step.h : solver->all[j]->position;
+    forces_.torque += cross(at - force_pose().position, (p.across[j] + lengthways) * (1.0 / step.h));
   }
-  if (step.interface_book != nullptr) solver.book(step, sideways, booked, velocity_at(before_.position));
 }
 
-/// Across, tissue that is held bends the needle: c = C/h², and what the solve adds. Along, a row that sticks; and the viscous part of the
-/// friction of one that slips, c = 1/drag. A tip that cuts holds nothing.
-void Needle::tell_held(const InteractionStep& step, HeldRows& held) const {
-  const State& s = *state_;
-  const auto acting = static_cast<std::uint32_t>(s.from_hand.size());
-  if (acting == 0) return;
-  std::uint32_t first = 0;
-  for (std::uint32_t j = 0; j < acting; ++j) {
-    const std::uint32_t mean = held.add_mean(s.acting_row(j).weights);
-    if (j == 0) first = mean;
-  }
-  const std::vector<double> compliance = s.compliance_across(step.h);
-  for (const Vec3d& e : two_across(direction())) {
-    for (std::uint32_t j = 0; j < acting - (s.tip_cuts ? 1 : 0); ++j) held.add_row(first + j, e);
-    held.end_group(compliance);
-  }
-  const Vec3d v = (pose_.position - before_.position) * (1.0 / step.h);
-  const ShaftFriction& f = s.options.friction;
-  shaft::Row row;
-  for (std::uint32_t j = 0; j < acting; ++j) {
-    const bool is_tip = j >= s.acting.size();
-    if (is_tip && (s.tip_cuts || s.tip_along == 0.0)) continue;
-    row = s.acting_row(j);
-    if (!shaft::read(step, row)) continue;
-    const double slip = dot(v - row.velocity, direction());
-    const bool slips = !is_tip && std::abs(slip) > kHeldSlip * f.stick_speed;
-    const double drag = slips ? step.h * s.lengths[j] * (slip > 0.0 ? f.viscous_in : f.viscous_out) : 0.0;
-    if (slips && !(drag > 0.0)) continue;
-    held.add_row(first + j, direction());
-    held.end_group(std::array{slips ? 1.0 / drag : s.slack});
-  }
+/// Keeps what the block of a short step has found.
+void Needle::Solver::keep(const shaft::Block& block) {
+  bend(block.across);
+  keep_along(block.along, block.slips);
+  found = {block.across, block.along};
 }
 
 int Needle::most_drag_stages() const { return kMostDragStagesBesideInstruments; }

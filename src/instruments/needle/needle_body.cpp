@@ -32,16 +32,6 @@ double longest_edge(const TetMesh& mesh, const Triangle& t) {
 
 }  // namespace
 
-std::vector<double> Needle::State::compliance_across(double h) const {
-  const Eigen::MatrixXd C = shaft::cantilever(from_hand, bending_stiffness());
-  const auto held = static_cast<Eigen::Index>(from_hand.size() - (tip_cuts ? 1 : 0));
-  std::vector<double> c;
-  for (Eigen::Index j = 0; j < held; ++j) {
-    for (Eigen::Index k = 0; k < held; ++k) c.push_back(C(j, k) / (h * h) + (j == k ? slack : 0.0));
-  }
-  return c;
-}
-
 double Needle::State::bending_stiffness() const {
   if (!options.youngs_modulus) return 0.0;
   const double outer = options.diameter, inner = options.inner_diameter;

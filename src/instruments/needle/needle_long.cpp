@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "base/two_across.h"
+#include "instruments/needle/cantilever.h"
 #include "instruments/needle/needle_solver.h"
 
 namespace glisson {
@@ -36,7 +37,7 @@ struct Needle::Solver::LongRows {
   std::vector<std::vector<VertexWeight>> means{};
   std::vector<Mat3d> W{};
   std::array<Vec3d, 2> e{};
-  Eigen::MatrixXd C{}, A{}, B{}, D{};
+  Eigen::MatrixXd A{}, B{}, D{};
   Eigen::VectorXd b{}, speed{};
   Vec3d bevel{};
 
@@ -56,12 +57,12 @@ double Needle::Solver::set_across(LongRows& r) const {
       r.b[row] = -dot(r.e[i], off);
       if (r.cuts) {
         r.b[row] -=
-            dot(r.e[i], r.W[j * r.n + r.n - 1] * r.bevel) + r.C(at(j), at(r.n - 1)) * dot(r.e[i], r.bevel) / (h * h);
+            dot(r.e[i], r.W[j * r.n + r.n - 1] * r.bevel) + C(at(j), at(r.n - 1)) * dot(r.e[i], r.bevel) / (h * h);
       }
       for (std::size_t k = 0; k < r.n; ++k) {
         r.B(row, at(k)) = r.w(j, r.e[i], k, d);
         for (std::size_t l = 0; l < 2 && k < r.held; ++l) {
-          r.A(row, at(2 * k + l)) = r.w(j, r.e[i], k, r.e[l]) + (i == l ? r.C(at(j), at(k)) / (h * h) : 0.0);
+          r.A(row, at(2 * k + l)) = r.w(j, r.e[i], k, r.e[l]) + (i == l ? C(at(j), at(k)) / (h * h) : 0.0);
         }
       }
     }
@@ -76,7 +77,7 @@ Needle::Solver::LongRows Needle::Solver::long_rows(const InteractionStep& step) 
   for (const shaft::Row* row : all) r.means.push_back(row->weights);
   r.W = step.compliance->couple(r.means);
   r.e = two_across(d);
-  r.C = shaft::cantilever(from_hand, s.bending_stiffness());
+  C = cantilever(from_hand, s.bending_stiffness());
   r.bevel = r.cuts && s.step_h > 0.0 ? bevel_force() * -h : Vec3d{};
   const auto size = at(2 * r.held);
   r.A.resize(size, size), r.B.resize(size, at(r.n)), r.b.resize(size);
@@ -137,7 +138,7 @@ void Needle::Solver::hand_out(const InteractionStep& step, const LongRows& r, co
   if (has_tip) shaft::read(step, s.tip);
 }
 
-Needle::Solver::Impulses Needle::Solver::solve_long(const InteractionStep& step) {
+void Needle::Solver::solve_long(const InteractionStep& step, const ToolVelocity& tool) {
   const LongRows r = long_rows(step);
   Eigen::MatrixXd D = r.D;
   Eigen::VectorXd speed = r.speed;
@@ -157,9 +158,21 @@ Needle::Solver::Impulses Needle::Solver::solve_long(const InteractionStep& step)
     }
   }
   if (r.cuts) p.across.back() = r.bevel;
-  bend(p.across, r.C);
+  bend(p.across);
   hand_out(step, r, p);
-  return p;
+  if (step.interface_book != nullptr) book(step, p, tool);
+  found = std::move(p);
+}
+
+/// Records the impulses in the energy ledger.
+void Needle::Solver::book(const InteractionStep& step, const Impulses& p, const ToolVelocity& tool) const {
+  for (std::size_t j = 0; j < all.size(); ++j) {
+    for (const VertexWeight& w : all[j]->weights) {
+      const std::uint32_t place = step.place_of[w.vertex];
+      step.book(sink_along(j >= node.size()), place, d * p.along[j] * w.weight, tool);
+      step.book(WorkSink::contact, place, p.across[j] * w.weight, tool);
+    }
+  }
 }
 
 std::string Needle::refuses_long_steps() const { return driver_refuses_long_steps(); }

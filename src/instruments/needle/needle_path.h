@@ -14,7 +14,8 @@
 #include <vector>
 
 #include "glisson/archive.h"
-#include "instruments/needle/shaft.h"
+#include "contact/shaft_block.h"
+#include "instruments/needle/tissue_zone.h"
 
 namespace glisson {
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "contact/shaft_block.h"
 #include "instruments/needle/needle_state.h"
 
 namespace glisson {
@@ -23,15 +24,20 @@ struct Needle::Solver {
   Vec3d needle_velocity() const { return (after - before) * (1.0 / h); }
   void find_rows(const InteractionStep& step);
   double way_past(std::size_t node) const;
-  std::vector<Vec3d> across_it(const Eigen::MatrixXd& W);
-  std::vector<double> along_it(const Eigen::MatrixXd& W);
+  /// The rows as a block of a short step. @param tool  velocity of the needle, for the ledger
+  shaft::Block block(const InteractionStep& step, const ToolVelocity& tool);
+  /// Keeps what that has found.
+  void keep(const shaft::Block& block);
   /// What a row exerts in a step [N s].
   struct Impulses {
     std::vector<Vec3d> across;
     std::vector<double> along;
   };
-  /// Both in a long step, where the rows move one another in all directions.
-  Impulses solve_long(const InteractionStep& step);
+  Impulses found{};
+  Eigen::MatrixXd C{};  ///< deflections of the needle at the rows by forces at them [m/N]
+  /// Finds them in a long step, where the rows move one another in all directions.
+  void solve_long(const InteractionStep& step, const ToolVelocity& tool);
+  double bending_energy(std::span<const Vec3d> sideways) const;
 
  private:
   struct LongRows;
@@ -40,18 +46,16 @@ struct Needle::Solver {
   std::vector<double> along_in_long(const LongRows& rows, const Eigen::MatrixXd& D, const Eigen::VectorXd& speed);
   void hand_out(const InteractionStep& step, const LongRows& rows, const Impulses& p);
   double tip_slip() const;
-  Eigen::MatrixXd wanted_across(std::size_t held, const Vec3d& bevel, const Eigen::MatrixXd& W,
-                                const Eigen::MatrixXd& C) const;
+  Vec3d off_by(std::size_t j) const;
+  double bevel_moves(const shaft::Block& block, std::size_t j) const;
+  WorkSink sink_along(bool is_tip) const;
+  void book(const InteractionStep& step, const Impulses& p, const ToolVelocity& tool) const;
   Vec3d bevel_force() const;
   void keep_along(std::span<const double> p, std::span<const char> slips);
-  void bend(std::span<const Vec3d> impulse, const Eigen::MatrixXd& C);
+  void bend(std::span<const Vec3d> impulse);
   Vec3d free_end(std::span<const Vec3d> impulse) const;
   double shaft_of(std::size_t row) const;
   shaft::AxialLimit limit_of(std::size_t row) const;
-
- public:
-  void book(const InteractionStep& step, std::span<const Vec3d> sideways, std::span<const Vec3d> lengthways,
-            const ToolVelocity& needle) const;
 };
 
 }  // namespace glisson

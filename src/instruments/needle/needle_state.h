@@ -95,14 +95,9 @@ struct Needle::State : NeedleKept {
   Vec3d tip_velocity{};                  ///< of the tissue at the tip before the step [m/s]
   std::vector<InnerMembrane> membranes;  ///< given and drawn, by ascending depth
 
-  // the last step
-  double slack = 0.0;               ///< compliance of rows across beside that of the needle [1/kg]
-  std::vector<std::size_t> acting;  ///< nodes that the needle acted on
-  std::vector<double> lengths;      ///< of shaft that each of them stands for [m]
-  std::vector<double> from_hand;    ///< of each, then of the tip if it acted: distance from the hand [m]
+  std::unique_ptr<Solver> solver;  ///< of the step that is being made
 
   void forget_forces(double h);
-  const shaft::Row& acting_row(std::size_t j) const { return j < acting.size() ? nodes[acting[j]] : tip; }
 
   // needle_path.cpp
   shaft::Row& entry() { return nodes[tracks[entered - 1].begin]; }  ///< of the track that the tip is in or has passed
@@ -130,7 +125,6 @@ struct Needle::State : NeedleKept {
   std::vector<TissueInterval> intervals_left(std::span<const Vec3d> points, std::span<const double> along) const;
   bool keep_what_is_left(std::size_t track, NeedlePath& kept) const;
   void cross_anew(const BodyView& body, const Vec3d& at, const Vec3d& direction);
-  std::vector<double> compliance_across(double h) const;  ///< of the acting rows that are held, row by row [1/kg]
   double bending_stiffness() const;                       ///< E I [N m²]; 0: rigid
   TipResistance resistance(int region_number) const;
   double cutting() const;    ///< where the tip is [N]

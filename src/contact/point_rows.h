@@ -1,4 +1,4 @@
-// contact_rows.h — points of the surface that a rigid solid holds out, and the impulses that do so.
+// point_rows.h — points of the surface that a rigid solid holds out, and the impulses that do so.
 //
 // All is seen in the frame of the solid, so that a moving solid is at rest there:
 //
@@ -17,13 +17,16 @@
 #include <span>
 #include <vector>
 
-#include "glisson/instruments/instrument.h"
-#include "instruments/contact/shape.h"
+#include "contact/push_clock.h"
+#include "contact/shape_traits.h"
+#include "glisson/pose.h"
+#include "glisson/simulation/interaction.h"
 
 namespace glisson {
 
 /// Sweeps of a long step at most: all points move one another there.
 inline constexpr int kMostLongSweeps = 1000;
+inline constexpr double kSolvedWithin = 1000.0;  ///< tolerances: rows that move by less have been solved
 
 /// A rigid solid during a step.
 struct ContactSolid {
@@ -34,10 +37,13 @@ struct ContactSolid {
   double last_h = 0.0;           ///< length of that step [s]; 0: there was none
   double friction = 0.0;         ///< μ [-], may be infinite
   double push_out_speed = 0.05;  ///< [m/s]
+  bool still = false;            ///< it never moves
   bool holds = false;            ///< what touches does not lift off …
   double grip = 0.0;             ///< … and touches where it is no farther than this [m]
   /// Distance that counts as none [m].
   double tolerance() const;
+  /// Of its material at a point of space, in this step and the last, 0 in the first [m/s]. @param h  of this step
+  ToolVelocity velocity_at(const Vec3d& x, double h) const;
 };
 
 /// A point of the surface, with what was found about it.
@@ -63,8 +69,10 @@ struct ContactRow {
   Vec3d carried, carried_before;  ///< velocity of the solid where the point starts, in this step and the last [m/s]
   std::optional<double> most;     ///< speed off the solid that it may get at most [m/s]
 
-  double pressing = 0.0;  ///< impulse along the normal [N s]
+  double pressing = 0.0;  ///< impulse along the normal [N s]; that of a row that was just declared is where the solver begins
   Vec3d rubbing{};        ///< impulse across it
+  bool is_new = true;     ///< the solver has not pushed it yet
+  PushClock::Time solved_at = 0;
 
   Vec3d impulse() const { return normal * pressing + rubbing; }
   /// Takes an impulse in parts along and across the normal.
@@ -81,18 +89,21 @@ bool prepare(ContactRow& row, const InteractionStep& step);
 /// Holds a vertex at a place in the frame of the solid.
 void prepare_bond(ContactRow& row, const Vec3d& anchor, const InteractionStep& step);
 
-/// Solves for all impulses and pushes. @return sweeps
-int solve(std::span<ContactRow> rows, const InteractionStep& step);
+/// The places that a row moves.
+inline std::span<const std::uint32_t> places_of(const ContactRow& row) { return std::span(row.places).first(row.count); }
+
+/// Solves for all impulses in sweeps, and pushes.
+/// @param most  sweeps at most @return sweeps
+int sweep(std::span<ContactRow* const> rows, const InteractionStep& step, PushClock& clock, int most);
+/// Sweeps at most over rows of a single tool.
+int most_sweeps(std::span<ContactRow* const> rows, const InteractionStep& step);
 
 /// Gives the point an impulse [N s].
 void push(const ContactRow& row, const InteractionStep& step, const Vec3d& impulse);
 
 /// Adds what a row holds: its point along the normal, where it sticks in all directions. None if the point does not end where the row wants
 /// it, as where a bond moves a corner of its triangle afterwards.
-void tell_held(const ContactRow& row, const InteractionStep& step, HeldRows& held);
-
-/// The impulse that gives the vertex at a place the velocity wanted, in components that may move [N s].
-Vec3d stopping(const InteractionStep& step, std::size_t place, const Vec3d& wanted);
+void list_held(const ContactRow& row, const InteractionStep& step, HeldRows& held);
 
 /// Barycentric weights of the deepest point of a triangle in a convex solid. @param corners  in the frame of the solid
 /// @param depth  its φ, on return. Cost: 20 ns for a ball, 0.5 µs for others

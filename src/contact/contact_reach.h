@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "glisson/archive.h"
-#include "instruments/contact/contact_rows.h"
-#include "instruments/contact/contact_surface.h"
+#include "contact/point_rows.h"
+#include "contact/contact_surface.h"
 
 namespace glisson {
 

@@ -1,10 +1,18 @@
-#include "instruments/needle/shaft.h"
+#include "contact/shaft_block.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+
+#include "base/two_across.h"
 
 namespace glisson::shaft {
 namespace {
+
+constexpr double kHeldSlip = 0.01;  ///< of the speed of sticking: a row that slips by less is held
+
+/// The part of a vector across a direction.
+Vec3d across_part(const Vec3d& a, const Vec3d& direction) { return a - direction * dot(a, direction); }
 
 double largest(const Vec3d& a) { return std::max({a.x, a.y, a.z}); }
 
@@ -68,11 +76,6 @@ void push(const InteractionStep& step, const Row& row, const Vec3d& impulse) {
   for (const VertexWeight& w : row.weights) step.push(step.place_of[w.vertex], impulse * w.weight);
 }
 
-void book(const InteractionStep& step, WorkSink sink, const Row& row, const Vec3d& impulse,
-          const ToolVelocity& needle) {
-  for (const VertexWeight& w : row.weights) step.book(sink, step.place_of[w.vertex], impulse * w.weight, needle);
-}
-
 /// Rows of nodes that are new, or all where a mobility has changed.
 void MobilityMatrix::extend(const InteractionStep& step, std::span<const Row> nodes) {
   const auto n = static_cast<Eigen::Index>(nodes.size());
@@ -110,26 +113,6 @@ Eigen::MatrixXd MobilityMatrix::of(const InteractionStep& step, std::span<const 
   }
   W(n, n) = dot_weights(step, *tip, reached_);
   return W;
-}
-
-double cantilever(double at, double of, double bending_stiffness) {
-  if (!(bending_stiffness > 0.0)) return 0.0;
-  const double x = std::max(0.0, at), y = std::max(0.0, of);
-  const double a = std::min(x, y), b = std::max(x, y);
-  return a * a * (3.0 * b - a) / (6.0 * bending_stiffness);
-}
-
-Eigen::MatrixXd cantilever(std::span<const double> distances, double bending_stiffness) {
-  const auto n = static_cast<Eigen::Index>(distances.size());
-  Eigen::MatrixXd C = Eigen::MatrixXd::Zero(n, n);
-  if (!(bending_stiffness > 0.0)) return C;
-  for (Eigen::Index j = 0; j < n; ++j) {
-    for (Eigen::Index k = 0; k < n; ++k) {
-      C(j, k) =
-          cantilever(distances[static_cast<std::size_t>(j)], distances[static_cast<std::size_t>(k)], bending_stiffness);
-    }
-  }
-  return C;
 }
 
 std::vector<char> solve_along(const Eigen::MatrixXd& W, std::span<const double> speed,
@@ -171,6 +154,109 @@ std::vector<char> solve_along(const Eigen::MatrixXd& W, std::span<const double> 
     }
   }
   return slips;
+}
+
+void Block::add(const Row& row) {
+  rows.push_back(&row);
+  tissue.push_back(row.velocity);
+}
+
+void Block::find_places(const InteractionStep& step) {
+  places.clear();
+  for (const Row* row : rows) {
+    for (const VertexWeight& w : row->weights) places.push_back(step.place_of[w.vertex]);
+  }
+  std::sort(places.begin(), places.end());
+  places.erase(std::unique(places.begin(), places.end()), places.end());
+}
+
+/// What the rows have without the shaft: others have pushed them since it was solved.
+void Block::take_off(const InteractionStep& step) {
+  if (!is_new) {
+    for (std::size_t j = 0; j < rows.size(); ++j) push(step, *rows[j], -(across[j] + direction * along[j]));
+  }
+  for (std::size_t j = 0; j < rows.size(); ++j) {
+    tissue[j] = {};
+    for (const VertexWeight& w : rows[j]->weights) tissue[j] += step.vertices[step.place_of[w.vertex]].velocity * w.weight;
+  }
+}
+
+/// Impulses across: the tissue stays on the bent shaft, in all rows that are held.
+void Block::solve_across() {
+  if (held == 0) return;
+  const auto n = static_cast<Eigen::Index>(held);
+  Eigen::MatrixXd A = W.topLeftCorner(n, n) + compliance.topLeftCorner(n, n);
+  A.diagonal().array() += slack;
+  Eigen::MatrixXd wanted(n, 3);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const auto row = static_cast<std::size_t>(j);
+    const Vec3d way = off[row] - across_part(tissue[row] - velocity, direction) * h + more[row];
+    for (std::size_t axis = 0; axis < 3; ++axis) wanted(j, static_cast<Eigen::Index>(axis)) = way[axis] / h;
+  }
+  const Eigen::MatrixXd p = A.ldlt().solve(wanted);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    across[static_cast<std::size_t>(j)] = across_part({p(j, 0), p(j, 1), p(j, 2)}, direction);
+  }
+}
+
+double Block::solve(const InteractionStep& step) {
+  if (!places.empty()) take_off(step);
+  const std::vector<Vec3d> across_before = across;
+  const std::vector<double> along_before = along;
+  solve_across();
+  std::vector<double> speed;
+  for (std::size_t j = 0; j < rows.size(); ++j) speed.push_back(dot(velocity - tissue[j], direction) - closing[j]);
+  slips = solve_along(W, speed, limits, friction, h, along);
+  double change = 0.0;
+  for (std::size_t j = 0; j < rows.size(); ++j) {
+    push(step, *rows[j], across[j] + direction * along[j]);
+    const auto at = static_cast<Eigen::Index>(j);
+    const double more_along = is_new ? along[j] : along[j] - along_before[j];
+    const Vec3d more_across = is_new ? across[j] : across[j] - across_before[j];
+    change = std::max(change, W(at, at) * h * std::max(std::abs(more_along), norm(more_across)));
+  }
+  is_new = false;
+  return change;
+}
+
+void Block::book(const InteractionStep& step) const {
+  for (std::size_t j = 0; j < rows.size(); ++j) {
+    for (const VertexWeight& w : rows[j]->weights) {
+      const std::uint32_t place = step.place_of[w.vertex];
+      step.book(sinks[j], place, direction * (along[j] * w.weight), tool);
+      step.book(WorkSink::contact, place, across[j] * w.weight, tool);
+    }
+  }
+}
+
+void Block::list_held(const InteractionStep& step, HeldRows& all) const {
+  std::uint32_t first = 0;
+  for (std::size_t j = 0; j < rows.size(); ++j) {
+    const std::uint32_t mean = all.add_mean(rows[j]->weights);
+    if (j == 0) first = mean;
+  }
+  const bool cuts = tip_cuts();
+  const auto stay = static_cast<Eigen::Index>(rows.size() - (cuts ? 1 : 0));
+  std::vector<double> c;
+  for (Eigen::Index j = 0; j < stay; ++j) {
+    for (Eigen::Index k = 0; k < stay; ++k) c.push_back(compliance(j, k) + (j == k ? slack : 0.0));
+  }
+  for (const Vec3d& e : two_across(direction)) {
+    for (std::uint32_t j = 0; j < stay; ++j) all.add_row(first + j, e);
+    all.end_group(c);
+  }
+  for (std::uint32_t j = 0; j < rows.size(); ++j) {
+    const AxialLimit& limit = limits[j];
+    if (limit.is_tip && (cuts || along[j] == 0.0)) continue;
+    Row row = *rows[j];
+    if (!read(step, row)) continue;
+    const double slip = dot(velocity - row.velocity, direction);
+    const bool yields = !limit.is_tip && std::abs(slip) > kHeldSlip * friction.stick_speed;
+    const double drag = yields ? step.h * limit.length * (slip > 0.0 ? friction.viscous_in : friction.viscous_out) : 0.0;
+    if (yields && !(drag > 0.0)) continue;
+    all.add_row(first + j, direction);
+    all.end_group(std::array{yields ? 1.0 / drag : slack});
+  }
 }
 
 }  // namespace glisson::shaft

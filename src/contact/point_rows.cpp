@@ -1,9 +1,10 @@
-#include "instruments/contact/contact_rows.h"
-#include "base/two_across.h"
+#include "contact/point_rows.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
+
+#include "base/two_across.h"
 
 namespace glisson {
 namespace {
@@ -13,7 +14,6 @@ constexpr int kMostSweepsBetween = 45;  // with triangles, whose points are look
 // Friction from which on two walls at right angles can hold a point by pressing and pulling it.
 constexpr double kJams = 1.0;
 constexpr char kMostReleases = 3;   // of a row: a corner in which it is let go and wanted again in turn needs both
-constexpr double kEnough = 1000.0;  // tolerances: rows that move by less have been solved
 constexpr int kMostCorrections = 8;
 constexpr double kAtEdge = 1e-3;  // a weight below it: the point is on an edge of its triangle
 constexpr double kAlike = 0.8;  // cosine between normals of solid and triangle that are one but for the triangle's size
@@ -246,7 +246,7 @@ void push(const ContactRow& row, const InteractionStep& step, const Vec3d& impul
   for (std::uint32_t i = 0; i < row.count; ++i) step.push(row.places[i], impulse * row.weights[i]);
 }
 
-void tell_held(const ContactRow& row, const InteractionStep& step, HeldRows& held) {
+void list_held(const ContactRow& row, const InteractionStep& step, HeldRows& held) {
   if (row.pressing == 0.0) return;
   const double close = kHeld * row.solid->tolerance();
   const Vec3d end = end_of(row, step);
@@ -263,12 +263,15 @@ void tell_held(const ContactRow& row, const InteractionStep& step, HeldRows& hel
   for (const Vec3d& e : two_across(row.normal)) held.add_row(point, e);
 }
 
-Vec3d stopping(const InteractionStep& step, std::size_t place, const Vec3d& wanted) {
-  const Vec3d change = wanted - step.vertices[place].velocity, &a = step.mobility[place];
-  return {a.x > 0.0 ? change.x / a.x : 0.0, a.y > 0.0 ? change.y / a.y : 0.0, a.z > 0.0 ? change.z / a.z : 0.0};
-}
-
 double ContactSolid::tolerance() const { return std::isfinite(traits.thickness) ? 1e-9 * traits.thickness : 1e-12; }
+
+ToolVelocity ContactSolid::velocity_at(const Vec3d& x, double h) const {
+  ToolVelocity velocity;
+  const Vec3d own = before.to_own(x);
+  if (last_h > 0.0) velocity.before = (x - earlier.to_space(own)) * (1.0 / last_h);
+  velocity.after = (after.to_space(own) - x) * (1.0 / h);
+  return velocity;
+}
 
 Vec3d end_of(const ContactRow& row, const InteractionStep& step) { return mean(row, at_end(row, step)); }
 
@@ -305,15 +308,16 @@ void prepare_bond(ContactRow& row, const Vec3d& anchor, const InteractionStep& s
   row.response = response_of(row, step);
 }
 
-int solve(std::span<ContactRow> rows, const InteractionStep& step) {
+int most_sweeps(std::span<ContactRow* const> rows, const InteractionStep& step) {
+  if (step.compliance != nullptr) return kMostLongSweeps;
+  const bool between = !rows.empty() && rows.back()->count == 3;  // triangles come last
+  return between ? kMostSweepsBetween : kMostSweeps;
+}
+
+int sweep(std::span<ContactRow* const> rows, const InteractionStep& step, PushClock& clock, int most) {
   double enough = 0.0;
-  for (const ContactRow& row : rows) enough = std::max(enough, kEnough * row.solid->tolerance());
-  // a row whose vertices no other row has pushed since it was solved is solved still
-  std::uint32_t clock = 1;
-  std::vector<std::uint32_t> pushed(step.vertices.size(), clock), seen(rows.size(), 0);
+  for (const ContactRow* row : rows) enough = std::max(enough, kSolvedWithin * row->solid->tolerance());
   const bool is_long = step.compliance != nullptr;
-  const bool between = !rows.empty() && rows.back().count == 3;  // triangles come last
-  const int most = is_long ? kMostLongSweeps : between ? kMostSweepsBetween : kMostSweeps;
   // A vertex in a corner that sticks to one wall needs nothing of another: they could only press and pull it against each other, as
   // far as they happen to. In a short step the first one's impulse leaves the other nothing to do.
   std::vector<std::size_t> holder(is_long ? step.vertices.size() : 0, rows.size());
@@ -321,10 +325,8 @@ int solve(std::span<ContactRow> rows, const InteractionStep& step) {
   for (int sweep = 1; sweep <= most; ++sweep) {
     double change = 0.0;
     for (std::size_t k = 0; k < rows.size(); ++k) {
-      ContactRow& row = rows[k];
-      std::uint32_t latest = 0;
-      for (std::uint32_t i = 0; i < row.count; ++i) latest = std::max(latest, pushed[row.places[i]]);
-      if (latest <= seen[k] && !is_long) continue;
+      ContactRow& row = *rows[k];
+      if (!is_long && clock.latest(places_of(row)) <= row.solved_at) continue;
       const bool alone = row.response.x == row.response.y && row.response.y == row.response.z;
       if (row.bonded) {
         change = std::max(change, hold(row, step));
@@ -337,12 +339,9 @@ int solve(std::span<ContactRow> rows, const InteractionStep& step) {
       const double pressed = spare ? release(row, step) : press(row, step), rubbed = spare ? 0.0 : rub(row, step);
       if (vertex && !spare) holder[row.places[0]] = sticks(row) ? k : rows.size();
       change = std::max({change, pressed, rubbed});
-      if (pressed > 0.0 || rubbed > 0.0) {
-        ++clock;
-        for (std::uint32_t i = 0; i < row.count; ++i) pushed[row.places[i]] = clock;
-      }
+      if (pressed > 0.0 || rubbed > 0.0) clock.push(places_of(row));
       // rubbing moves a point along a curved solid, and off it where supports hold some of its ways: once more then
-      if (rubbed <= enough || (alone && row.solid->traits.flat)) seen[k] = clock;
+      if (rubbed <= enough || (alone && row.solid->traits.flat)) row.solved_at = clock.now();
     }
     if (change <= enough) return sweep;
   }

@@ -1,7 +1,7 @@
-// shape.h — what the contact solver asks of a shape beside its distance.
+// shape_traits.h — what the contact solver asks of a shape beside its distance.
 #pragma once
 
-#include "glisson/instruments/contact.h"
+#include "glisson/contact/shape.h"
 
 namespace glisson {
 

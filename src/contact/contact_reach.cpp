@@ -1,4 +1,4 @@
-#include "instruments/contact/contact_reach.h"
+#include "contact/contact_reach.h"
 
 #include <algorithm>
 #include <cmath>

@@ -11,7 +11,7 @@
 #include <limits>
 
 #include "base/text.h"
-#include "instruments/contact/shape.h"
+#include "contact/shape_traits.h"
 
 namespace glisson {
 namespace {

@@ -1,4 +1,4 @@
-#include "instruments/contact/contact_surface.h"
+#include "contact/contact_surface.h"
 
 #include <algorithm>
 #include <limits>

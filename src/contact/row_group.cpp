@@ -1,0 +1,58 @@
+#include "contact/row_group.h"
+
+#include <algorithm>
+
+#include "glisson/contact/step_rows.h"
+
+namespace glisson {
+
+void RowGroup::clear() {
+  earlier.swap(points);
+  points.clear(), holds.clear(), discs.clear(), pushes.clear();
+  shaft.reset();
+  account = nullptr;
+  has_impulses = others_act = corrected = false;
+  sweeps = last_sweeps = 0;
+}
+
+double solve(HoldRow& row, const InteractionStep& step) {
+  const Vec3d change = row.velocity - step.vertices[row.place].velocity, &a = step.mobility[row.place];
+  const Vec3d impulse{a.x > 0.0 ? change.x / a.x : 0.0, a.y > 0.0 ? change.y / a.y : 0.0, a.z > 0.0 ? change.z / a.z : 0.0};
+  step.push(row.place, impulse);
+  row.impulse += impulse;
+  return norm(change) * step.h;
+}
+
+/// The impulse that would stop it, with its own taken off, or as much less as its size allows; of tissue that cannot move, all.
+double solve(DiscRow& row, const InteractionStep& step) {
+  Vec3d tissue{};
+  for (std::size_t c = 0; c < 4; ++c) tissue += step.vertices[row.places[c]].velocity * row.weights[c];
+  const Vec3d off = row.velocity - tissue;
+  const Vec3d slip = off - row.line * (dot(row.line, off) / dot(row.line, row.line)), free = slip + row.impulse * row.mobility;
+  const double speed = norm(free);
+  const double size = !(speed > 0.0) ? 0.0 : row.mobility > 0.0 ? std::min(row.most, speed / row.mobility) : row.most;
+  const Vec3d wanted = size > 0.0 ? free * (size / speed) : Vec3d{}, change = wanted - row.impulse;
+  if (change == Vec3d{}) return 0.0;
+  for (std::size_t c = 0; c < 4; ++c) step.push(row.places[c], change * row.weights[c]);
+  row.impulse = wanted;
+  return norm(change) * row.mobility * step.h;
+}
+
+StepRows::StepRows() : group_(std::make_unique<RowGroup>()) {}
+StepRows::~StepRows() = default;
+StepRows::StepRows(StepRows&&) noexcept = default;
+StepRows& StepRows::operator=(StepRows&&) noexcept = default;
+
+std::size_t StepRows::hold(std::uint32_t place, const Vec3d& velocity, const ToolVelocity& tool) {
+  group_->holds.push_back({.place = place, .velocity = velocity, .tool = tool});
+  return group_->holds.size() - 1;
+}
+
+void StepRows::push(std::uint32_t place, const Vec3d& impulse, WorkSink sink, const ToolVelocity& tool) {
+  group_->pushes.push_back({.place = place, .impulse = impulse, .sink = sink, .tool = tool});
+}
+
+std::size_t StepRows::hold_count() const { return group_->holds.size(); }
+Vec3d StepRows::holding_impulse(std::size_t row) const { return group_->holds.at(row).impulse; }
+
+}  // namespace glisson

@@ -1,0 +1,81 @@
+// row_group.h — the rows of one tool in a step, by law.
+//
+//   points   a vertex or a point of a triangle that a solid holds out, with Coulomb's cone, or holds          point_rows.h
+//   holds    a vertex that ends the step with a given velocity
+//   discs    a mean of vertices that is stopped across a line, by an impulse of limited size
+//   shaft    a block of rows along an axis, that bends                                                        shaft_block.h
+//   pushes   impulses that are given
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "contact/point_rows.h"
+#include "contact/shaft_block.h"
+#include "contact/work_account.h"
+#include "glisson/simulation/interaction.h"
+
+namespace glisson {
+
+/// A vertex that ends the step with a given velocity, in components that may move.
+struct HoldRow {
+  std::uint32_t place = 0;
+  Vec3d velocity{};   ///< [m/s]
+  ToolVelocity tool;  ///< for the ledger
+  Vec3d impulse{};    ///< [N s]
+  PushClock::Time solved_at = 0;
+};
+
+/// A mean of the vertices of a tet that is stopped across a line, by an impulse of limited size.
+struct DiscRow {
+  std::array<std::uint32_t, 4> places{};
+  std::array<double, 4> weights{};
+  Vec3d velocity{};       ///< that it is taken along with [m/s]
+  Vec3d line{};           ///< along it nothing is stopped; any length
+  double most = 0.0;      ///< size of the impulse [N s]
+  double mobility = 0.0;  ///< velocity per impulse at most [1/kg]
+  std::array<ToolVelocity, 4> tool{};  ///< at each vertex, for the ledger
+  Vec3d impulse{};        ///< [N s]
+  PushClock::Time solved_at = 0;
+};
+
+/// An impulse that is given [N s].
+struct GivenRow {
+  std::uint32_t place = 0;
+  Vec3d impulse{};
+  WorkSink sink = WorkSink::contact;
+  ToolVelocity tool;  ///< for the ledger
+  bool is_new = true;
+};
+
+struct RowGroup {
+  std::vector<ContactRow> points;
+  std::vector<HoldRow> holds;
+  std::vector<DiscRow> discs;
+  std::vector<GivenRow> pushes;
+  std::optional<shaft::Block> shaft;
+  WorkAccount* account = nullptr;     ///< of the points
+  std::vector<ContactRow> earlier;    ///< points before clear()
+  bool has_impulses = false;          ///< in a long step: the points have their impulses already, and are not solved for
+
+  bool others_act = false;  ///< other tools push the same vertices, or it has no rows yet: what others push may come into reach
+
+  // what solving took
+  int sweeps = 0, last_sweeps = 0;  ///< over the points, in all rounds and in the last
+  bool corrected = false;           ///< the account was overdrawn
+
+  void clear();
+  std::size_t size() const {
+    return points.size() + holds.size() + discs.size() + pushes.size() + (shaft ? shaft->rows.size() : 0);
+  }
+};
+
+/// Takes a vertex to its velocity. @return by how much it was moved [m]
+double solve(HoldRow& row, const InteractionStep& step);
+/// Stops a mean as far as its impulse goes. @return by how much it was moved [m]
+double solve(DiscRow& row, const InteractionStep& step);
+
+}  // namespace glisson

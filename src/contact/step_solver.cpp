@@ -1,0 +1,358 @@
+#include "contact/step_solver.h"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <limits>
+#include <numeric>
+#include <tuple>
+
+namespace glisson {
+namespace {
+
+constexpr int kMostRounds = 4;        ///< of declaring rows in a short step …
+constexpr int kMostLongRounds = 12;   ///< … and in a long one
+constexpr int kMostTurns = 400;       ///< of the laws of an island
+constexpr int kMostJointSweeps = 400;  ///< over the points of several tools
+constexpr double kEnoughAlone = 1e-9;  ///< where there are no points: rows that move by less have been solved [m]
+constexpr double kHeldWithin = 1e-13;  ///< of where it is to end: such a vertex is held [m]
+constexpr std::uint32_t kNoTool = std::numeric_limits<std::uint32_t>::max();
+
+/// What a row of points is known by, whoever declared it.
+auto key_of(const ContactRow& row) {
+  const auto numbers = [](const Vec3d& x) { return std::array{x.x, x.y, x.z}; };
+  return std::tuple(row.count, row.places, row.weights, numbers(row.normal), numbers(row.origin), row.solid->friction);
+}
+
+auto key_of(const DiscRow& row) { return std::tuple(row.places, row.weights, row.velocity.x, row.velocity.y, row.velocity.z); }
+
+auto key_of(const shaft::Block& block) {
+  const shaft::Row& row = *block.rows.front();
+  return std::tuple(row.rest.x, row.rest.y, row.rest.z, block.direction.x, block.direction.y, block.direction.z);
+}
+
+/// Of the tool's material where a row acts.
+ToolVelocity tool_velocity(const ContactRow& row, const InteractionStep& step) {
+  const ContactSolid& solid = *row.solid;
+  if (solid.still) return {};
+  if (step.compliance == nullptr) return solid.velocity_at(row.origin, step.h);
+  const Vec3d own = end_of(row, step), x = solid.after.to_space(own);
+  const Vec3d velocity = (x - solid.before.to_space(own)) * (1.0 / step.h);
+  return {velocity, velocity};
+}
+
+template <class Row>
+void sort_rows(std::vector<Row*>& rows) {
+  std::stable_sort(rows.begin(), rows.end(), [](const Row* a, const Row* b) { return key_of(*a) < key_of(*b); });
+}
+
+template <class Do>
+void for_places(const RowGroup& group, const InteractionStep& step, const Do& act) {
+  for (const ContactRow& row : group.points) {
+    for (const std::uint32_t place : places_of(row)) act(place);
+  }
+  for (const HoldRow& row : group.holds) act(row.place);
+  for (const GivenRow& row : group.pushes) act(row.place);
+  for (const DiscRow& row : group.discs) {
+    for (const std::uint32_t place : row.places) act(place);
+  }
+  if (!group.shaft) return;
+  for (const shaft::Row* row : group.shaft->rows) {
+    for (const VertexWeight& w : row->weights) act(step.place_of[w.vertex]);
+  }
+}
+
+}  // namespace
+
+void StepSolver::begin(const InteractionStep& step) {
+  before_.clear();
+  for (const ActiveVertex& w : step.vertices) before_.push_back(w.velocity);
+}
+
+void StepSolver::fit(std::size_t tools) {
+  while (rows_.size() < tools) rows_.emplace_back();
+  known_.assign(tools, 0);
+}
+
+/// @return whether some tool has more rows than before
+bool StepSolver::declare(Tools tools, const InteractionStep& step, int round) {
+  bool more = false;
+  for (std::size_t k = 0; k < tools.size(); ++k) {
+    RowGroup& rows = group(k);
+    if (round == 0) rows.clear();
+    known_[k] = rows.size();
+    rows.others_act = round > 0 && known_[k] == 0;
+  }
+  for (std::size_t i = 0; i < island_count_ && round > 0; ++i) {
+    for (const std::size_t k : islands_[i].tools) group(k).others_act = islands_[i].tools.size() > 1;
+  }
+  for (std::size_t k = 0; k < tools.size(); ++k) {
+    tools[k]->declare(step, rows_[k], round);
+    more = more || group(k).size() > known_[k];
+  }
+  return more;
+}
+
+std::uint32_t StepSolver::first_of(std::uint32_t tool) const {
+  while (merged_[tool] != tool) tool = merged_[tool];
+  return tool;
+}
+
+/// A tool acts at a place: it is of the island of those that act there, too.
+void StepSolver::mark(std::uint32_t tool, std::uint32_t place) {
+  if (owner_[place] == kNoTool) {
+    owner_[place] = tool;
+    return;
+  }
+  const std::uint32_t a = first_of(owner_[place]), b = first_of(tool);
+  merged_[std::max(a, b)] = std::min(a, b);
+}
+
+/// Tools that share vertices, directly or by others.
+void StepSolver::find_islands(const InteractionStep& step) {
+  merged_.resize(known_.size());
+  std::vector<std::uint32_t> acting;
+  for (std::uint32_t k = 0; k < merged_.size(); ++k) {
+    merged_[k] = k;
+    if (group(k).size() > 0) acting.push_back(k);
+  }
+  if (acting.size() > 1) {
+    owner_.assign(step.vertices.size(), kNoTool);
+    for (const std::uint32_t k : acting) for_places(group(k), step, [&](std::uint32_t place) { mark(k, place); });
+  }
+  island_count_ = 0;
+  std::vector<std::uint32_t> of_tool(merged_.size(), kNoTool);
+  for (const std::uint32_t k : acting) {
+    std::uint32_t& number = of_tool[first_of(k)];
+    if (number == kNoTool) {
+      number = static_cast<std::uint32_t>(island_count_++);
+      if (islands_.size() < island_count_) islands_.emplace_back();
+      islands_[number].tools.clear();
+    }
+    islands_[number].tools.push_back(k);
+  }
+}
+
+/// Lists the rows of an island; those of several tools in an order of their own.
+void StepSolver::gather(Island& island, const InteractionStep& step) {
+  island.points.clear(), island.discs.clear(), island.shafts.clear(), island.holds.clear();
+  for (const std::size_t k : island.tools) {
+    RowGroup& rows = group(k);
+    for (ContactRow& row : rows.points) island.points.push_back(&row);
+    for (DiscRow& row : rows.discs) island.discs.push_back(&row);
+    for (HoldRow& row : rows.holds) island.holds.push_back(&row);
+    if (rows.shaft && !rows.shaft->rows.empty()) island.shafts.push_back(&*rows.shaft);
+  }
+  if (island.tools.size() == 1) return;
+  sort_rows(island.points), sort_rows(island.discs), sort_rows(island.shafts);
+  for (shaft::Block* block : island.shafts) block->find_places(step);
+  join_holds(island);
+}
+
+/// A vertex that several tools hold gets the mean of what they want.
+void StepSolver::join_holds(Island& island) {
+  island.joint.clear(), island.given_by.clear();
+  std::stable_sort(island.holds.begin(), island.holds.end(), [](const HoldRow* a, const HoldRow* b) {
+    return std::tuple(a->place, a->velocity.x, a->velocity.y, a->velocity.z) <
+           std::tuple(b->place, b->velocity.x, b->velocity.y, b->velocity.z);
+  });
+  for (std::size_t first = 0, end = 0; first < island.holds.size(); first = end) {
+    HoldRow joint;
+    joint.place = island.holds[first]->place;
+    for (end = first; end < island.holds.size() && island.holds[end]->place == joint.place; ++end) {
+      joint.velocity += island.holds[end]->velocity, joint.impulse += island.holds[end]->impulse;
+      island.given_by.emplace_back(island.holds[end], static_cast<std::uint32_t>(island.joint.size()));
+    }
+    joint.velocity *= 1.0 / static_cast<double>(end - first);
+    island.joint.push_back(joint);
+  }
+  island.holds.clear();
+  for (HoldRow& row : island.joint) island.holds.push_back(&row);
+}
+
+/// Each tool that holds a vertex bears the same part of what holds it.
+void StepSolver::share_out(Island& island) {
+  std::vector<int> parts(island.joint.size(), 0);
+  for (const auto& [row, number] : island.given_by) ++parts[number];
+  for (const auto& [row, number] : island.given_by) row->impulse = island.joint[number].impulse * (1.0 / parts[number]);
+}
+
+/// Impulses that rows begin with.
+void StepSolver::begin_rows(Island& island, const InteractionStep& step) {
+  for (const std::size_t k : island.tools) {
+    for (GivenRow& row : group(k).pushes) {
+      if (std::exchange(row.is_new, false)) step.push(row.place, row.impulse);
+    }
+  }
+  for (ContactRow* row : island.points) {
+    row->solved_at = 0;
+    if (std::exchange(row->is_new, false) && row->impulse() != Vec3d{}) push(*row, step, row->impulse());
+  }
+}
+
+/// Discs, shafts and holds whose places have been pushed since they were solved. @return by how much one was moved at most [m]
+double StepSolver::sweep_others(Island& island, const InteractionStep& step) {
+  double most = 0.0;
+  const auto meet = [&](auto& row, std::span<const std::uint32_t> places, const auto& solve_it) {
+    if (row.solved_at != 0 && clock_.latest(places) <= row.solved_at) return;
+    const double change = solve_it(row);
+    if (change > 0.0) clock_.push(places);
+    row.solved_at = clock_.now();
+    most = std::max(most, change);
+  };
+  for (DiscRow* row : island.discs) meet(*row, row->places, [&](DiscRow& x) { return glisson::solve(x, step); });
+  for (shaft::Block* block : island.shafts) meet(*block, block->places, [&](shaft::Block& x) { return x.solve(step); });
+  for (HoldRow* row : island.holds) {
+    meet(*row, {&row->place, 1}, [&](HoldRow& x) { return glisson::solve(x, step); });
+  }
+  return most;
+}
+
+/// Meets all rows of an island, as far as their impulses are not bounded otherwise. @return sweeps over the points
+int StepSolver::settle(Island& island, const InteractionStep& step) {
+  const bool alone = island.tools.size() == 1;
+  const int most = alone ? most_sweeps(island.points, step) : kMostJointSweeps;
+  double enough = island.points.empty() ? kEnoughAlone : 0.0;
+  for (const ContactRow* row : island.points) enough = std::max(enough, kSolvedWithin * row->solid->tolerance());
+  const auto is_due = [&](const ContactRow* row) { return clock_.latest(places_of(*row)) > row->solved_at; };
+  int sweeps = 0;
+  for (int turn = 0; turn < kMostTurns; ++turn) {
+    if (std::any_of(island.points.begin(), island.points.end(), is_due)) {
+      const int taken = sweep(island.points, step, clock_, most);
+      sweeps += taken;
+      is_unmet_ = is_unmet_ || (!alone && taken == most);
+    }
+    if (sweep_others(island, step) <= enough) return sweeps;
+  }
+  is_unmet_ = true;
+  return sweeps;
+}
+
+/// Rows that give the body more than their tool's contact has taken from it are solved for anew, and then made smaller.
+void StepSolver::solve(Island& island, const InteractionStep& step) {
+  gather(island, step);
+  begin_rows(island, step);
+  for (ContactRow* row : island.points) row->most.reset();
+  int sweeps = settle(island, step);
+  const auto is_overdrawn = [&](std::size_t tool) {
+    const RowGroup& rows = group(tool);
+    return rows.account != nullptr && !rows.points.empty() && rows.account->is_overdrawn(rows.points, before_, step);
+  };
+  std::vector<std::size_t> overdrawn;
+  std::copy_if(island.tools.begin(), island.tools.end(), std::back_inserter(overdrawn), is_overdrawn);
+  if (!overdrawn.empty()) {
+    for (ContactRow* row : island.points) row->solved_at = 0;
+    for (const std::size_t k : overdrawn) begin_anew(group(k).points, before_, step), group(k).corrected = true;
+    sweeps += settle(island, step);
+    for (const std::size_t k : overdrawn) {
+      if (is_overdrawn(k)) shrink(group(k).points, before_, step);
+    }
+  }
+  if (!island.joint.empty() && island.tools.size() > 1) share_out(island);
+  for (const std::size_t k : island.tools) group(k).last_sweeps = sweeps, group(k).sweeps += sweeps;
+}
+
+void StepSolver::solve(Tools tools, const InteractionStep& step) {
+  fit(tools.size());
+  clock_.fit(step.vertices.size());
+  is_unmet_ = false;
+  for (int round = 0; round < kMostRounds && declare(tools, step, round); ++round) {
+    find_islands(step);
+    for (Island& island : std::span(islands_).first(island_count_)) {
+      const auto has_new = [&](std::size_t k) { return group(k).size() > known_[k]; };
+      if (std::any_of(island.tools.begin(), island.tools.end(), has_new)) solve(island, step);
+    }
+  }
+  for (std::size_t k = 0; k < tools.size(); ++k) {
+    RowGroup& rows = group(k);
+    if (rows.account != nullptr) rows.account->close(rows.points, before_, step);
+  }
+  book(step);
+  for (std::size_t k = 0; k < tools.size(); ++k) tools[k]->solved(step, rows_[k]);
+}
+
+void StepSolver::solve_alone(Tools tools, std::size_t tool, const InteractionStep& step) {
+  fit(tools.size());
+  clock_.fit(step.vertices.size());
+  RowGroup& rows = group(tool);
+  rows.clear();
+  Island island;
+  island.tools = {tool};
+  for (int round = 0; round < kMostLongRounds; ++round) {
+    const std::size_t known = rows.size();
+    tools[tool]->declare(step, rows_[tool], round);
+    if (rows.size() == known) break;
+    gather(island, step);
+    begin_rows(island, step);
+    if (!rows.has_impulses) {
+      rows.last_sweeps = sweep(island.points, step, clock_, most_sweeps(island.points, step));
+      rows.sweeps += rows.last_sweeps;
+    }
+    step.compliance->settle(step.vertices);
+    if (rows.has_impulses) break;
+  }
+  if (step.interface_book != nullptr) book(rows, step);
+  tools[tool]->solved(step, rows_[tool]);
+}
+
+/// Records the impulses of a tool in the energy ledger.
+void StepSolver::book(const RowGroup& rows, const InteractionStep& step) const {
+  for (const ContactRow& row : rows.points) {
+    if (row.pressing == 0.0 && row.rubbing == Vec3d{}) continue;
+    const ToolVelocity tool = tool_velocity(row, step);
+    for (std::uint32_t i = 0; i < row.count; ++i) {
+      step.book(WorkSink::contact, row.places[i], row.normal * (row.pressing * row.weights[i]), tool);
+      step.book(WorkSink::friction, row.places[i], row.rubbing * row.weights[i], tool);
+    }
+  }
+  for (const DiscRow& row : rows.discs) {
+    for (std::size_t c = 0; c < 4; ++c) {
+      step.book(WorkSink::fracture, row.places[c], row.impulse * row.weights[c], row.tool[c]);
+    }
+  }
+  if (rows.shaft) rows.shaft->book(step);
+  for (const HoldRow& row : rows.holds) step.book(WorkSink::contact, row.place, row.impulse, row.tool);
+  for (const GivenRow& row : rows.pushes) step.book(row.sink, row.place, row.impulse, row.tool);
+}
+
+/// All tools, each in a book of its own first: sums do not depend on the order of the tools.
+void StepSolver::book(const InteractionStep& step) {
+  if (step.interface_book == nullptr) return;
+  std::vector<std::size_t> acting;
+  for (std::size_t k = 0; k < known_.size(); ++k) {
+    if (group(k).size() > 0) acting.push_back(k);
+  }
+  if (acting.size() == 1) return book(group(acting.front()), step);
+  InterfaceBook& sum = *step.interface_book;
+  InteractionStep own = step;
+  own.interface_book = &own_book_;
+  std::array<std::array<std::vector<double>, 2>, 3> tools;
+  for (const std::size_t k : acting) {
+    own_book_.begin(step.vertices.size());
+    book(group(k), own);
+    for (std::size_t sink = 0; sink < sum.pages.size(); ++sink) {
+      const InterfaceBook::Page& page = own_book_.pages[sink];
+      for (std::size_t i = 0; i < page.impulses.size(); ++i) sum.pages[sink].impulses[i] += page.impulses[i];
+      tools[sink][0].push_back(page.tools_before), tools[sink][1].push_back(page.tools_after);
+    }
+  }
+  for (std::size_t sink = 0; sink < sum.pages.size(); ++sink) {
+    for (std::vector<double>& parts : tools[sink]) std::sort(parts.begin(), parts.end());
+    sum.pages[sink].tools_before = std::accumulate(tools[sink][0].begin(), tools[sink][0].end(), 0.0);
+    sum.pages[sink].tools_after = std::accumulate(tools[sink][1].begin(), tools[sink][1].end(), 0.0);
+  }
+}
+
+void StepSolver::list_held(const InteractionStep& step, HeldRows& held) const {
+  for (const StepRows& of_tool : rows_) {
+    const RowGroup& rows = of_tool.group();
+    for (const ContactRow& row : rows.points) glisson::list_held(row, step, held);
+    for (const HoldRow& row : rows.holds) {
+      const ActiveVertex& w = step.vertices[row.place];
+      if (norm(w.velocity - row.velocity) * step.h <= kHeldWithin) held.add_vertex(w.vertex);
+    }
+    if (rows.shaft && !rows.shaft->rows.empty()) rows.shaft->list_held(step, held);
+  }
+}
+
+}  // namespace glisson
