@@ -46,6 +46,10 @@ void print_results(const std::vector<const VariantRecorder*>& variants) {
     if (s.inverted_tets_most > 0) {
       say(" (up to {} inverted tets, from {:.4g} s on)", s.inverted_tets_most, s.first_inversion_s);
     }
+    if (s.unmet_contact_steps > 0) {
+      say(" (tools close on tissue that cannot yield: contact was not met in {} steps, from {:.4g} s on)",
+          s.unmet_contact_steps, s.first_unmet_contact_s);
+    }
     if (s.energy_gain && s.energy_gain->any()) say(" (energy from nothing, from {:.4g} s on)", s.energy_gain->began);
     if (variants[i]->rejected() > 0) say(" ({} poses of tools rejected)", variants[i]->rejected());
     if (s.linear_share_mean) say(" ({:.0f} % of the tets linear in the mean)", 100.0 * *s.linear_share_mean);

@@ -156,6 +156,7 @@ double rub(ContactRow& row, const InteractionStep& step) {
   const Vec3d drift = row.solid->after.axes * (end_of(row, step) - row.start) * (1.0 / step.h);
   const Vec3d undone = drift - scaled(row.response, row.rubbing);
   Vec3d wanted = sticking(row, undone - row.normal * dot(undone, row.normal));
+  if (row.softness > 0.0) wanted *= 1.0 / (1.0 + row.softness);
   const double size = norm(wanted);
   if (size > limit) wanted *= limit / size;
   const Vec3d change = wanted - row.rubbing;
@@ -168,6 +169,7 @@ double press(ContactRow& row, const InteractionStep& step) {
   const Vec3d way = transposed(row.solid->after.axes) * scaled(row.response, row.normal) * step.h;
   const double per_impulse = row.along * step.h;
   double wanted = needed(row, end_of(row, step) - way * row.pressing, way, per_impulse);
+  if (row.softness > 0.0) wanted /= 1.0 + row.softness;
   if (row.most) wanted = std::min(wanted, std::max(0.0, row.pressing + (*row.most - speed_off(row, step)) / row.along));
   const double change = wanted - row.pressing;
   row.pressing = wanted;
@@ -314,7 +316,7 @@ int most_sweeps(std::span<ContactRow* const> rows, const InteractionStep& step) 
   return between ? kMostSweepsBetween : kMostSweeps;
 }
 
-int sweep(std::span<ContactRow* const> rows, const InteractionStep& step, PushClock& clock, int most) {
+Swept sweep(std::span<ContactRow* const> rows, const InteractionStep& step, PushClock& clock, int most) {
   double enough = 0.0;
   for (const ContactRow* row : rows) enough = std::max(enough, kSolvedWithin * row->solid->tolerance());
   const bool is_long = step.compliance != nullptr;
@@ -322,7 +324,8 @@ int sweep(std::span<ContactRow* const> rows, const InteractionStep& step, PushCl
   // far as they happen to. In a short step the first one's impulse leaves the other nothing to do.
   std::vector<std::size_t> holder(is_long ? step.vertices.size() : 0, rows.size());
   std::vector<char> releases(is_long ? rows.size() : 0, 0);
-  for (int sweep = 1; sweep <= most; ++sweep) {
+  Swept done;
+  while (done.sweeps < most) {
     double change = 0.0;
     for (std::size_t k = 0; k < rows.size(); ++k) {
       ContactRow& row = *rows[k];
@@ -343,9 +346,10 @@ int sweep(std::span<ContactRow* const> rows, const InteractionStep& step, PushCl
       // rubbing moves a point along a curved solid, and off it where supports hold some of its ways: once more then
       if (rubbed <= enough || (alone && row.solid->traits.flat)) row.solved_at = clock.now();
     }
-    if (change <= enough) return sweep;
+    ++done.sweeps, done.change = change;
+    if (change <= enough) break;
   }
-  return most;
+  return done;
 }
 
 std::array<double, 3> deepest(const Shape& shape, const std::array<Vec3d, 3>& corners, double& depth) {

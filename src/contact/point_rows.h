@@ -71,6 +71,7 @@ struct ContactRow {
 
   double pressing = 0.0;  ///< impulse along the normal [N s]; that of a row that was just declared is where the solver begins
   Vec3d rubbing{};        ///< impulse across it
+  double softness = 0.0;  ///< compliance over the point's own: above 0 where rows cannot all be met
   bool is_new = true;     ///< the solver has not pushed it yet
   PushClock::Time solved_at = 0;
 
@@ -92,9 +93,12 @@ void prepare_bond(ContactRow& row, const Vec3d& anchor, const InteractionStep& s
 /// The places that a row moves.
 inline std::span<const std::uint32_t> places_of(const ContactRow& row) { return std::span(row.places).first(row.count); }
 
-/// Solves for all impulses in sweeps, and pushes.
-/// @param most  sweeps at most @return sweeps
-int sweep(std::span<ContactRow* const> rows, const InteractionStep& step, PushClock& clock, int most);
+struct Swept {
+  int sweeps = 0;
+  double change = 0.0;  ///< by how much a point was moved at most in the last [m]
+};
+/// Solves for all impulses in sweeps, and pushes. @param most  sweeps at most
+Swept sweep(std::span<ContactRow* const> rows, const InteractionStep& step, PushClock& clock, int most);
 /// Sweeps at most over rows of a single tool.
 int most_sweeps(std::span<ContactRow* const> rows, const InteractionStep& step);
 

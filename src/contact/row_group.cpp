@@ -17,10 +17,11 @@ void RowGroup::clear() {
 
 double solve(HoldRow& row, const InteractionStep& step) {
   const Vec3d change = row.velocity - step.vertices[row.place].velocity, &a = step.mobility[row.place];
-  const Vec3d impulse{a.x > 0.0 ? change.x / a.x : 0.0, a.y > 0.0 ? change.y / a.y : 0.0, a.z > 0.0 ? change.z / a.z : 0.0};
+  Vec3d impulse{a.x > 0.0 ? change.x / a.x : 0.0, a.y > 0.0 ? change.y / a.y : 0.0, a.z > 0.0 ? change.z / a.z : 0.0};
+  if (row.softness > 0.0) impulse = (row.impulse + impulse) * (1.0 / (1.0 + row.softness)) - row.impulse;
   step.push(row.place, impulse);
   row.impulse += impulse;
-  return norm(change) * step.h;
+  return norm(Vec3d{a.x * impulse.x, a.y * impulse.y, a.z * impulse.z}) * step.h;
 }
 
 /// The impulse that would stop it, with its own taken off, or as much less as its size allows; of tissue that cannot move, all.

@@ -26,6 +26,7 @@ struct HoldRow {
   Vec3d velocity{};   ///< [m/s]
   ToolVelocity tool;  ///< for the ledger
   Vec3d impulse{};    ///< [N s]
+  double softness = 0.0;  ///< as that of a ContactRow
   PushClock::Time solved_at = 0;
 };
 

@@ -4,16 +4,20 @@
 #include <array>
 #include <iterator>
 #include <limits>
-#include <numeric>
 #include <tuple>
 
 namespace glisson {
 namespace {
 
-constexpr int kMostRounds = 4;        ///< of declaring rows in a short step …
-constexpr int kMostLongRounds = 12;   ///< … and in a long one
+constexpr int kMostRounds = 12;       ///< of declaring rows in a step
 constexpr int kMostTurns = 400;       ///< of the laws of an island
-constexpr int kMostJointSweeps = 400;  ///< over the points of several tools
+constexpr int kLook = 20;             ///< after so many of several tools it is looked at …
+constexpr double kStalls = 1e-5;      ///< … whether rows move as far as a turn before, but for this share …
+constexpr double kStallsLong = 1e-3;  ///< … and as far as when it was looked at last …
+constexpr double kSoftness = 0.05;    ///< … and yield by this compliance then, over a point's own
+constexpr double kHelps = 0.7;        ///< a jump that leaves more of it than that has not helped
+constexpr double kFarOff = 100.0;     ///< tolerances: rows that still move by more in the last turn have not been met
+constexpr double kFarthest = 1000.0;  ///< of what a turn has changed: so far impulses are taken at once
 constexpr double kEnoughAlone = 1e-9;  ///< where there are no points: rows that move by less have been solved [m]
 constexpr double kHeldWithin = 1e-13;  ///< of where it is to end: such a vertex is held [m]
 constexpr std::uint32_t kNoTool = std::numeric_limits<std::uint32_t>::max();
@@ -210,22 +214,73 @@ double StepSolver::sweep_others(Island& island, const InteractionStep& step) {
 
 /// Meets all rows of an island, as far as their impulses are not bounded otherwise. @return sweeps over the points
 int StepSolver::settle(Island& island, const InteractionStep& step) {
-  const bool alone = island.tools.size() == 1;
-  const int most = alone ? most_sweeps(island.points, step) : kMostJointSweeps;
   double enough = island.points.empty() ? kEnoughAlone : 0.0;
   for (const ContactRow* row : island.points) enough = std::max(enough, kSolvedWithin * row->solid->tolerance());
+  if (island.tools.size() > 1) return settle_together(island, step, enough);
+  const int most = most_sweeps(island.points, step);
   const auto is_due = [&](const ContactRow* row) { return clock_.latest(places_of(*row)) > row->solved_at; };
   int sweeps = 0;
   for (int turn = 0; turn < kMostTurns; ++turn) {
     if (std::any_of(island.points.begin(), island.points.end(), is_due)) {
-      const int taken = sweep(island.points, step, clock_, most);
-      sweeps += taken;
-      is_unmet_ = is_unmet_ || (!alone && taken == most);
+      sweeps += sweep(island.points, step, clock_, most).sweeps;
     }
-    if (sweep_others(island, step) <= enough) return sweeps;
+    if (sweep_others(island, step) <= enough) break;
   }
-  is_unmet_ = true;
   return sweeps;
+}
+
+/// Rows of several tools in turn. Where they move each other as far in every turn, not all can be met: all yield then, each by the same
+/// part of what its impulse moves its own point, and the sum of squares of what is missed is the least. Where it becomes less by a little in
+/// every turn, impulses are taken at once to where that leads [Aitken1926].
+int StepSolver::settle_together(Island& island, const InteractionStep& step, double enough) {
+  double last = 0.0, at_last_look = 0.0;
+  bool is_soft = false;
+  std::vector<Vec3d> before;
+  for (int turn = 1; turn <= kMostTurns; ++turn) {
+    const bool looks = turn % kLook == 0;
+    before.clear();
+    for (const ContactRow* row : island.points) {
+      if (looks) before.push_back(row->impulse());
+    }
+    const double points = sweep(island.points, step, clock_, 1).change;
+    const double change = std::max(points, sweep_others(island, step));
+    if (change <= enough) return turn;
+    const double ratio = change / last;
+    last = change;
+    if (!looks) continue;
+    const bool stalls = std::abs(1.0 - ratio) < kStalls && std::abs(1.0 - at_last_look / change) < kStallsLong;
+    const bool may_jump = at_last_look == 0.0 || change < kHelps * at_last_look;  // the last jump has led nowhere: on in turns
+    at_last_look = change;
+    if (!is_soft && stalls) {
+      soften(island);
+      is_soft = is_unmet_ = true;
+    } else if (may_jump && ratio < 1.0) {
+      go_further(island, before, std::min(ratio / (1.0 - ratio), kFarthest), step);
+    }
+  }
+  is_unmet_ = is_unmet_ || last > kFarOff * enough;
+  return kMostTurns;
+}
+
+/// Takes impulses of the points further by so much of what the last turn has changed, as far as their laws go.
+void StepSolver::go_further(Island& island, std::span<const Vec3d> before, double share, const InteractionStep& step) {
+  for (std::size_t k = 0; k < island.points.size(); ++k) {
+    ContactRow& row = *island.points[k];
+    const Vec3d now = row.impulse();
+    if (row.pressing == 0.0 || now == before[k]) continue;
+    row.take(now + (now - before[k]) * share);
+    if (!row.solid->holds) row.pressing = std::max(0.0, row.pressing);
+    const double most = row.solid->friction > 0.0 ? row.solid->friction * std::max(0.0, row.pressing) : 0.0;
+    if (const double size = norm(row.rubbing); size > most) row.rubbing *= most / size;
+    push(row, step, row.impulse() - now);
+    clock_.push(places_of(row));
+    row.solved_at = 0;
+  }
+}
+
+void StepSolver::soften(Island& island) {
+  for (ContactRow* row : island.points) row->softness = kSoftness, row->solved_at = 0;
+  for (HoldRow* row : island.holds) row->softness = kSoftness, row->solved_at = 0;
 }
 
 /// Rows that give the body more than their tool's contact has taken from it are solved for anew, and then made smaller.
@@ -278,14 +333,14 @@ void StepSolver::solve_alone(Tools tools, std::size_t tool, const InteractionSte
   rows.clear();
   Island island;
   island.tools = {tool};
-  for (int round = 0; round < kMostLongRounds; ++round) {
+  for (int round = 0; round < kMostRounds; ++round) {
     const std::size_t known = rows.size();
     tools[tool]->declare(step, rows_[tool], round);
     if (rows.size() == known) break;
     gather(island, step);
     begin_rows(island, step);
     if (!rows.has_impulses) {
-      rows.last_sweeps = sweep(island.points, step, clock_, most_sweeps(island.points, step));
+      rows.last_sweeps = sweep(island.points, step, clock_, most_sweeps(island.points, step)).sweeps;
       rows.sweeps += rows.last_sweeps;
     }
     step.compliance->settle(step.vertices);
@@ -315,7 +370,7 @@ void StepSolver::book(const RowGroup& rows, const InteractionStep& step) const {
   for (const GivenRow& row : rows.pushes) step.book(row.sink, row.place, row.impulse, row.tool);
 }
 
-/// All tools, each in a book of its own first: sums do not depend on the order of the tools.
+/// Several tools each in a book of its own first, which are then summed in an order of their own: sums do not depend on that of the tools.
 void StepSolver::book(const InteractionStep& step) {
   if (step.interface_book == nullptr) return;
   std::vector<std::size_t> acting;
@@ -323,24 +378,20 @@ void StepSolver::book(const InteractionStep& step) {
     if (group(k).size() > 0) acting.push_back(k);
   }
   if (acting.size() == 1) return book(group(acting.front()), step);
-  InterfaceBook& sum = *step.interface_book;
-  InteractionStep own = step;
-  own.interface_book = &own_book_;
-  std::array<std::array<std::vector<double>, 2>, 3> tools;
-  for (const std::size_t k : acting) {
-    own_book_.begin(step.vertices.size());
-    book(group(k), own);
-    for (std::size_t sink = 0; sink < sum.pages.size(); ++sink) {
-      const InterfaceBook::Page& page = own_book_.pages[sink];
-      for (std::size_t i = 0; i < page.impulses.size(); ++i) sum.pages[sink].impulses[i] += page.impulses[i];
-      tools[sink][0].push_back(page.tools_before), tools[sink][1].push_back(page.tools_after);
-    }
+  books_.resize(acting.size());
+  for (std::size_t k = 0; k < acting.size(); ++k) {
+    InteractionStep own = step;
+    own.interface_book = &books_[k];
+    books_[k].begin(step.vertices.size());
+    book(group(acting[k]), own);
   }
-  for (std::size_t sink = 0; sink < sum.pages.size(); ++sink) {
-    for (std::vector<double>& parts : tools[sink]) std::sort(parts.begin(), parts.end());
-    sum.pages[sink].tools_before = std::accumulate(tools[sink][0].begin(), tools[sink][0].end(), 0.0);
-    sum.pages[sink].tools_after = std::accumulate(tools[sink][1].begin(), tools[sink][1].end(), 0.0);
-  }
+  const auto key_of = [](const InterfaceBook& book) {
+    std::array<double, 6> key{};
+    for (std::size_t i = 0; i < 3; ++i) key[2 * i] = book.pages[i].tools_before, key[2 * i + 1] = book.pages[i].tools_after;
+    return key;
+  };
+  std::stable_sort(books_.begin(), books_.end(), [&](const auto& a, const auto& b) { return key_of(a) < key_of(b); });
+  for (const InterfaceBook& own : books_) step.interface_book->add(own);
 }
 
 void StepSolver::list_held(const InteractionStep& step, HeldRows& held) const {

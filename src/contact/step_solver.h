@@ -58,6 +58,9 @@ class StepSolver {
   void solve(Island& island, const InteractionStep& step);
   void begin_rows(Island& island, const InteractionStep& step);
   int settle(Island& island, const InteractionStep& step);
+  int settle_together(Island& island, const InteractionStep& step, double enough);
+  void go_further(Island& island, std::span<const Vec3d> before, double share, const InteractionStep& step);
+  void soften(Island& island);
   double sweep_others(Island& island, const InteractionStep& step);
   void share_out(Island& island);
   void book(const RowGroup& rows, const InteractionStep& step) const;
@@ -71,7 +74,7 @@ class StepSolver {
   std::vector<std::uint32_t> owner_;    ///< per place: a tool that acts there, or none
   std::vector<std::uint32_t> merged_;   ///< per tool: the first of its island, or one nearer to it
   PushClock clock_;
-  InterfaceBook own_book_;              ///< of one tool
+  std::vector<InterfaceBook> books_;    ///< of each tool that acts
   bool is_unmet_ = false;
 };
 

@@ -105,6 +105,10 @@ nlohmann::ordered_json summary_json(const RunSummary& s, const Variant& variant,
     json["first_inversion_s"] = s.first_inversion_s;
   else
     json["first_inversion_s"] = nullptr;
+  if (s.unmet_contact_steps > 0) {
+    json["unmet_contact_steps"] = s.unmet_contact_steps;
+    json["first_unmet_contact_s"] = s.first_unmet_contact_s;
+  }
   if (!s.never_met.empty()) json["never_met"] = s.never_met;
   for (const Advice& one : advice) json["advice"].push_back(advice_json(one));
   json["integrator"] = word_of(variant.simulation.integrator);

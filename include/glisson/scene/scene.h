@@ -142,6 +142,8 @@ struct RunSummary {
       linear_share_mean{};             ///< Simulation::linear_share() over the steps; none unless precision is adaptive
   std::size_t inverted_tets_most = 0;  ///< largest number of tets inverted in one step
   double first_inversion_s = -1.0;     ///< time of it; −1: none
+  std::uint64_t unmet_contact_steps = 0;  ///< in which contact of all tools could not be met (StepResult::contact_met)
+  double first_unmet_contact_s = -1.0;    ///< time of the first; −1: none
   std::uint64_t state_hash = 0;
   std::string instruction_set{};         ///< of the element kernels; the hash is one of this set
   std::vector<std::string> never_met{};  ///< instruments without a force or an event in a run that came to its end

@@ -66,6 +66,13 @@ struct InterfaceBook {
   void begin(std::size_t places) {
     for (Page& p : pages) p.impulses.assign(places, Vec3d{}), p.tools_before = p.tools_after = 0.0;
   }
+  /// Adds another one of the same step.
+  void add(const InterfaceBook& other) {
+    for (std::size_t k = 0; k < pages.size(); ++k) {
+      for (std::size_t i = 0; i < pages[k].impulses.size(); ++i) pages[k].impulses[i] += other.pages[k].impulses[i];
+      pages[k].tools_before += other.pages[k].tools_before, pages[k].tools_after += other.pages[k].tools_after;
+    }
+  }
 };
 
 /// Velocity of a tool's material at a point, before and after the time of the forces [m/s].

@@ -236,7 +236,8 @@ StepResult ExplicitScheme::step() {
   tell_moved();
   pace_->step_made(h);
   if (!interactions().empty() || state_.loads.depends_on_state()) pace_->follow_added(added());
-  return {seen.inverted.empty() ? StepStatus::ok : StepStatus::inverted, seen.inverted, {}};
+  const StepStatus status = seen.inverted.empty() ? StepStatus::ok : StepStatus::inverted;
+  return {status, seen.inverted, {}, interactions_.is_met()};
 }
 
 ForceParts ExplicitScheme::force(ConstraintId constraint) const {

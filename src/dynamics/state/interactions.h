@@ -64,6 +64,8 @@ class Interactions {
   void go_back(const Found& found);
   /// What impulses held in this step.
   void list_held(HeldRows& held) const;
+  /// Whether all that they declared in this step could be met.
+  bool is_met() const { return !solver_.is_unmet(); }
   void clear_impulses();
   /// What each has of its own (Interaction::save_state), and takes them back there.
   using Saved = std::vector<std::shared_ptr<const void>>;

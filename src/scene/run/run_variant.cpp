@@ -148,6 +148,7 @@ bool Run::step() {
     if (summary_.first_inversion_s < 0.0) summary_.first_inversion_s = start;
     summary_.inverted_tets_most = std::max(summary_.inverted_tets_most, result.inverted_tets.size());
   }
+  if (!result.contact_met && summary_.unmet_contact_steps++ == 0) summary_.first_unmet_contact_s = start;
   const bool made = result.made();
   if (!made && result.status != StepStatus::interrupted) summary_.trouble = result.message;
   summary_.end = end_of(result.status, variant_.on_inversion);
