@@ -123,6 +123,7 @@ class OwnStep {
       (viscous ? w.viscous : w.elastic) += values[k];
     }
   }
+
  private:
   const InteractionStep* step_;
 };
@@ -135,11 +136,11 @@ class OwnRows {
 
   void hold(nb::handle which, const ArrayLike& velocities) const {
     const auto [places, values] = step().placed(which, velocities, "velocities");
-    for (std::size_t k = 0; k < places.size(); ++k) rows().hold(places[k], values[k], {values[k], values[k]});
+    for (std::size_t k = 0; k < places.size(); ++k) rows().hold(places[k], values[k]);
   }
   void push(nb::handle which, const ArrayLike& impulses) const {
     const auto [places, values] = step().placed(which, impulses, "impulses");
-    for (std::size_t k = 0; k < places.size(); ++k) rows().push(places[k], values[k], WorkSink::contact, {});
+    for (std::size_t k = 0; k < places.size(); ++k) rows().push(places[k], values[k]);
   }
   Doubles impulses() const {
     std::vector<Vec3d> values;
@@ -285,16 +286,19 @@ void bind_step(nb::module_& m) {
       .def("add_force", &OwnStep::add_force, "vertices"_a, "forces"_a, "viscous"_a = false,
            "In add_forces: forces [N], (n, 3), on active vertices. They count as elastic or as viscous forces in the "
            "energy balance.");
-  nb::class_<OwnRows>(m, "StepRows",
-                      "What an Interaction wants of the body at the end of a step; one solver meets the rows of all tools "
-                      "together. Valid only in the call that receives it.")
-      .def("hold", &OwnRows::hold, "vertices"_a, "velocities"_a,
-           "In declare: active vertices end the step with these velocities [m/s], (n, 3), whatever impulses that takes; "
-           "what a support holds stays. A vertex that several tools hold gets the mean of what they want.")
+  nb::class_<OwnRows>(
+      m, "StepRows",
+      "What an Interaction wants of the body at the end of a step; one solver meets the rows of all tools "
+      "together. Valid only in the call that receives it.")
+      .def(
+          "hold", &OwnRows::hold, "vertices"_a, "velocities"_a,
+          "In declare: active vertices end the step with these velocities [m/s], (n, 3), whatever impulses that takes; "
+          "what a support holds stays. A vertex that several tools hold gets the mean of what they want.")
       .def("push", &OwnRows::push, "vertices"_a, "impulses"_a,
            "In declare: impulses [N s], (n, 3), on active vertices; held components do not move.")
-      .def_prop_ro("impulses", &OwnRows::impulses,
-                   "In solved: impulses on the vertices that were held, (n, 3), in the order in which they were declared [N s]");
+      .def_prop_ro(
+          "impulses", &OwnRows::impulses,
+          "In solved: impulses on the vertices that were held, (n, 3), in the order in which they were declared [N s]");
 }
 
 constexpr const char* kInteraction =

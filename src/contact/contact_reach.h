@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "glisson/archive.h"
-#include "contact/point_rows.h"
 #include "contact/contact_surface.h"
+#include "contact/point_rows.h"
+#include "glisson/archive.h"
 
 namespace glisson {
 

@@ -13,7 +13,7 @@ constexpr int kMostSweeps = 60;
 constexpr int kMostSweepsBetween = 45;  // with triangles, whose points are looked for up to three times
 // Friction from which on two walls at right angles can hold a point by pressing and pulling it.
 constexpr double kJams = 1.0;
-constexpr char kMostReleases = 3;   // of a row: a corner in which it is let go and wanted again in turn needs both
+constexpr char kMostReleases = 3;  // of a row: a corner in which it is let go and wanted again in turn needs both
 constexpr int kMostCorrections = 8;
 constexpr double kAtEdge = 1e-3;  // a weight below it: the point is on an edge of its triangle
 constexpr double kAlike = 0.8;  // cosine between normals of solid and triangle that are one but for the triangle's size

@@ -69,8 +69,9 @@ struct ContactRow {
   Vec3d carried, carried_before;  ///< velocity of the solid where the point starts, in this step and the last [m/s]
   std::optional<double> most;     ///< speed off the solid that it may get at most [m/s]
 
-  double pressing = 0.0;  ///< impulse along the normal [N s]; that of a row that was just declared is where the solver begins
-  Vec3d rubbing{};        ///< impulse across it
+  double pressing =
+      0.0;          ///< impulse along the normal [N s]; that of a row that was just declared is where the solver begins
+  Vec3d rubbing{};  ///< impulse across it
   double softness = 0.0;  ///< compliance over the point's own: above 0 where rows cannot all be met
   bool is_new = true;     ///< the solver has not pushed it yet
   PushClock::Time solved_at = 0;
@@ -91,7 +92,9 @@ bool prepare(ContactRow& row, const InteractionStep& step);
 void prepare_bond(ContactRow& row, const Vec3d& anchor, const InteractionStep& step);
 
 /// The places that a row moves.
-inline std::span<const std::uint32_t> places_of(const ContactRow& row) { return std::span(row.places).first(row.count); }
+inline std::span<const std::uint32_t> places_of(const ContactRow& row) {
+  return std::span(row.places).first(row.count);
+}
 
 struct Swept {
   int sweeps = 0;

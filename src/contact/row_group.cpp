@@ -29,7 +29,8 @@ double solve(DiscRow& row, const InteractionStep& step) {
   Vec3d tissue{};
   for (std::size_t c = 0; c < 4; ++c) tissue += step.vertices[row.places[c]].velocity * row.weights[c];
   const Vec3d off = row.velocity - tissue;
-  const Vec3d slip = off - row.line * (dot(row.line, off) / dot(row.line, row.line)), free = slip + row.impulse * row.mobility;
+  const Vec3d slip = off - row.line * (dot(row.line, off) / dot(row.line, row.line)),
+              free = slip + row.impulse * row.mobility;
   const double speed = norm(free);
   const double size = !(speed > 0.0) ? 0.0 : row.mobility > 0.0 ? std::min(row.most, speed / row.mobility) : row.most;
   const Vec3d wanted = size > 0.0 ? free * (size / speed) : Vec3d{}, change = wanted - row.impulse;
@@ -44,13 +45,13 @@ StepRows::~StepRows() = default;
 StepRows::StepRows(StepRows&&) noexcept = default;
 StepRows& StepRows::operator=(StepRows&&) noexcept = default;
 
-std::size_t StepRows::hold(std::uint32_t place, const Vec3d& velocity, const ToolVelocity& tool) {
+std::size_t StepRows::hold(std::uint32_t place, const Vec3d& velocity, const std::optional<ToolVelocity>& tool) {
   group_->holds.push_back({.place = place, .velocity = velocity, .tool = tool});
   return group_->holds.size() - 1;
 }
 
-void StepRows::push(std::uint32_t place, const Vec3d& impulse, WorkSink sink, const ToolVelocity& tool) {
-  group_->pushes.push_back({.place = place, .impulse = impulse, .sink = sink, .tool = tool});
+void StepRows::push(std::uint32_t place, const Vec3d& impulse) {
+  group_->pushes.push_back({.place = place, .impulse = impulse});
 }
 
 std::size_t StepRows::hold_count() const { return group_->holds.size(); }

@@ -23,10 +23,10 @@ namespace glisson {
 /// A vertex that ends the step with a given velocity, in components that may move.
 struct HoldRow {
   std::uint32_t place = 0;
-  Vec3d velocity{};   ///< [m/s]
-  ToolVelocity tool;  ///< for the ledger
-  Vec3d impulse{};    ///< [N s]
-  double softness = 0.0;  ///< as that of a ContactRow
+  Vec3d velocity{};                    ///< [m/s]
+  std::optional<ToolVelocity> tool{};  ///< for the ledger; none: the tissue's own
+  Vec3d impulse{};                     ///< [N s]
+  double softness = 0.0;               ///< as that of a ContactRow
   PushClock::Time solved_at = 0;
 };
 
@@ -34,12 +34,12 @@ struct HoldRow {
 struct DiscRow {
   std::array<std::uint32_t, 4> places{};
   std::array<double, 4> weights{};
-  Vec3d velocity{};       ///< that it is taken along with [m/s]
-  Vec3d line{};           ///< along it nothing is stopped; any length
-  double most = 0.0;      ///< size of the impulse [N s]
-  double mobility = 0.0;  ///< velocity per impulse at most [1/kg]
+  Vec3d velocity{};                    ///< that it is taken along with [m/s]
+  Vec3d line{};                        ///< along it nothing is stopped; any length
+  double most = 0.0;                   ///< size of the impulse [N s]
+  double mobility = 0.0;               ///< velocity per impulse at most [1/kg]
   std::array<ToolVelocity, 4> tool{};  ///< at each vertex, for the ledger
-  Vec3d impulse{};        ///< [N s]
+  Vec3d impulse{};                     ///< [N s]
   PushClock::Time solved_at = 0;
 };
 
@@ -47,8 +47,6 @@ struct DiscRow {
 struct GivenRow {
   std::uint32_t place = 0;
   Vec3d impulse{};
-  WorkSink sink = WorkSink::contact;
-  ToolVelocity tool;  ///< for the ledger
   bool is_new = true;
 };
 
@@ -58,11 +56,12 @@ struct RowGroup {
   std::vector<DiscRow> discs;
   std::vector<GivenRow> pushes;
   std::optional<shaft::Block> shaft;
-  WorkAccount* account = nullptr;     ///< of the points
-  std::vector<ContactRow> earlier;    ///< points before clear()
-  bool has_impulses = false;          ///< in a long step: the points have their impulses already, and are not solved for
+  WorkAccount* account = nullptr;   ///< of the points
+  std::vector<ContactRow> earlier;  ///< points before clear()
+  bool has_impulses = false;        ///< in a long step: the points have their impulses already, and are not solved for
 
-  bool others_act = false;  ///< other tools push the same vertices, or it has no rows yet: what others push may come into reach
+  bool others_act =
+      false;  ///< other tools push the same vertices, or solids act and it has no rows yet: what they push may come into reach
 
   // what solving took
   int sweeps = 0, last_sweeps = 0;  ///< over the points, in all rounds and in the last

@@ -177,7 +177,8 @@ void Block::take_off(const InteractionStep& step) {
   }
   for (std::size_t j = 0; j < rows.size(); ++j) {
     tissue[j] = {};
-    for (const VertexWeight& w : rows[j]->weights) tissue[j] += step.vertices[step.place_of[w.vertex]].velocity * w.weight;
+    for (const VertexWeight& w : rows[j]->weights)
+      tissue[j] += step.vertices[step.place_of[w.vertex]].velocity * w.weight;
   }
 }
 
@@ -252,7 +253,8 @@ void Block::list_held(const InteractionStep& step, HeldRows& all) const {
     if (!read(step, row)) continue;
     const double slip = dot(velocity - row.velocity, direction);
     const bool yields = !limit.is_tip && std::abs(slip) > kHeldSlip * friction.stick_speed;
-    const double drag = yields ? step.h * limit.length * (slip > 0.0 ? friction.viscous_in : friction.viscous_out) : 0.0;
+    const double drag =
+        yields ? step.h * limit.length * (slip > 0.0 ? friction.viscous_in : friction.viscous_out) : 0.0;
     if (yields && !(drag > 0.0)) continue;
     all.add_row(first + j, direction);
     all.end_group(std::array{yields ? 1.0 / drag : slack});

@@ -9,15 +9,15 @@
 namespace glisson {
 namespace {
 
-constexpr int kMostRounds = 12;       ///< of declaring rows in a step
-constexpr int kMostTurns = 400;       ///< of the laws of an island
-constexpr int kLook = 20;             ///< after so many of several tools it is looked at …
-constexpr double kStalls = 1e-5;      ///< … whether rows move as far as a turn before, but for this share …
-constexpr double kStallsLong = 1e-3;  ///< … and as far as when it was looked at last …
-constexpr double kSoftness = 0.05;    ///< … and yield by this compliance then, over a point's own
-constexpr double kHelps = 0.7;        ///< a jump that leaves more of it than that has not helped
-constexpr double kFarOff = 100.0;     ///< tolerances: rows that still move by more in the last turn have not been met
-constexpr double kFarthest = 1000.0;  ///< of what a turn has changed: so far impulses are taken at once
+constexpr int kMostRounds = 12;        ///< of declaring rows in a step
+constexpr int kMostTurns = 400;        ///< of the laws of an island
+constexpr int kLook = 20;              ///< after so many of several tools it is looked at …
+constexpr double kStalls = 1e-5;       ///< … whether rows move as far as a turn before, but for this share …
+constexpr double kStallsLong = 1e-3;   ///< … and as far as when it was looked at last …
+constexpr double kSoftness = 0.05;     ///< … and yield by this compliance then, over a point's own
+constexpr double kHelps = 0.7;         ///< a jump that leaves more of it than that has not helped
+constexpr double kFarOff = 100.0;      ///< tolerances: rows that still move by more in the last turn have not been met
+constexpr double kFarthest = 1000.0;   ///< of what a turn has changed: so far impulses are taken at once
 constexpr double kEnoughAlone = 1e-9;  ///< where there are no points: rows that move by less have been solved [m]
 constexpr double kHeldWithin = 1e-13;  ///< of where it is to end: such a vertex is held [m]
 constexpr std::uint32_t kNoTool = std::numeric_limits<std::uint32_t>::max();
@@ -28,7 +28,9 @@ auto key_of(const ContactRow& row) {
   return std::tuple(row.count, row.places, row.weights, numbers(row.normal), numbers(row.origin), row.solid->friction);
 }
 
-auto key_of(const DiscRow& row) { return std::tuple(row.places, row.weights, row.velocity.x, row.velocity.y, row.velocity.z); }
+auto key_of(const DiscRow& row) {
+  return std::tuple(row.places, row.weights, row.velocity.x, row.velocity.y, row.velocity.z);
+}
 
 auto key_of(const shaft::Block& block) {
   const shaft::Row& row = *block.rows.front();
@@ -80,13 +82,14 @@ void StepSolver::fit(std::size_t tools) {
 
 /// @return whether some tool has more rows than before
 bool StepSolver::declare(Tools tools, const InteractionStep& step, int round) {
-  bool more = false;
+  bool more = false, solids_act = false;
   for (std::size_t k = 0; k < tools.size(); ++k) {
     RowGroup& rows = group(k);
     if (round == 0) rows.clear();
     known_[k] = rows.size();
-    rows.others_act = round > 0 && known_[k] == 0;
+    solids_act = solids_act || !rows.points.empty() || !rows.holds.empty();
   }
+  for (std::size_t k = 0; k < tools.size(); ++k) group(k).others_act = solids_act && known_[k] == 0;
   for (std::size_t i = 0; i < island_count_ && round > 0; ++i) {
     for (const std::size_t k : islands_[i].tools) group(k).others_act = islands_[i].tools.size() > 1;
   }
@@ -249,7 +252,8 @@ int StepSolver::settle_together(Island& island, const InteractionStep& step, dou
     last = change;
     if (!looks) continue;
     const bool stalls = std::abs(1.0 - ratio) < kStalls && std::abs(1.0 - at_last_look / change) < kStallsLong;
-    const bool may_jump = at_last_look == 0.0 || change < kHelps * at_last_look;  // the last jump has led nowhere: on in turns
+    const bool may_jump =
+        at_last_look == 0.0 || change < kHelps * at_last_look;  // the last jump has led nowhere: on in turns
     at_last_look = change;
     if (!is_soft && stalls) {
       soften(island);
@@ -366,8 +370,9 @@ void StepSolver::book(const RowGroup& rows, const InteractionStep& step) const {
     }
   }
   if (rows.shaft) rows.shaft->book(step);
-  for (const HoldRow& row : rows.holds) step.book(WorkSink::contact, row.place, row.impulse, row.tool);
-  for (const GivenRow& row : rows.pushes) step.book(row.sink, row.place, row.impulse, row.tool);
+  for (const HoldRow& row : rows.holds) {
+    if (row.tool) step.book(WorkSink::contact, row.place, row.impulse, *row.tool);
+  }
 }
 
 /// Several tools each in a book of its own first, which are then summed in an order of their own: sums do not depend on that of the tools.
@@ -387,7 +392,8 @@ void StepSolver::book(const InteractionStep& step) {
   }
   const auto key_of = [](const InterfaceBook& book) {
     std::array<double, 6> key{};
-    for (std::size_t i = 0; i < 3; ++i) key[2 * i] = book.pages[i].tools_before, key[2 * i + 1] = book.pages[i].tools_after;
+    for (std::size_t i = 0; i < 3; ++i)
+      key[2 * i] = book.pages[i].tools_before, key[2 * i + 1] = book.pages[i].tools_after;
     return key;
   };
   std::stable_sort(books_.begin(), books_.end(), [&](const auto& a, const auto& b) { return key_of(a) < key_of(b); });

@@ -42,8 +42,9 @@ class StepSolver {
     std::vector<ContactRow*> points;
     std::vector<DiscRow*> discs;
     std::vector<shaft::Block*> shafts;
-    std::vector<HoldRow*> holds;         ///< one per place
-    std::vector<std::pair<HoldRow*, std::uint32_t>> given_by;  ///< all of several tools, and of which of `holds` each is a part
+    std::vector<HoldRow*> holds;  ///< one per place
+    std::vector<std::pair<HoldRow*, std::uint32_t>>
+        given_by;  ///< all of several tools, and of which of `holds` each is a part
     std::vector<HoldRow> joint;
   };
 
@@ -66,15 +67,15 @@ class StepSolver {
   void book(const RowGroup& rows, const InteractionStep& step) const;
   void book(const InteractionStep& step);
 
-  std::vector<StepRows> rows_;  ///< per tool
+  std::vector<StepRows> rows_;      ///< per tool
   std::vector<std::size_t> known_;  ///< rows per tool before this round
-  std::vector<Vec3d> before_;   ///< v₋ per place [m/s]
+  std::vector<Vec3d> before_;       ///< v₋ per place [m/s]
   std::vector<Island> islands_;
   std::size_t island_count_ = 0;
-  std::vector<std::uint32_t> owner_;    ///< per place: a tool that acts there, or none
-  std::vector<std::uint32_t> merged_;   ///< per tool: the first of its island, or one nearer to it
+  std::vector<std::uint32_t> owner_;   ///< per place: a tool that acts there, or none
+  std::vector<std::uint32_t> merged_;  ///< per tool: the first of its island, or one nearer to it
   PushClock clock_;
-  std::vector<InterfaceBook> books_;    ///< of each tool that acts
+  std::vector<InterfaceBook> books_;  ///< of each tool that acts
   bool is_unmet_ = false;
 };
 

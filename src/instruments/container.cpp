@@ -79,8 +79,8 @@ struct Container::State : ContainerKept {
   double height = kInfinite, size = 0.0;
   ContactReach reach;
   WorkAccount account;
-  bool is_long = false;  ///< acts in long steps: bonds rest from the start, and no step lets go of what it has found
-  std::set<Place> has_row;                          ///< where points are looked for again in a step
+  bool is_long = false;     ///< acts in long steps: bonds rest from the start, and no step lets go of what it has found
+  std::set<Place> has_row;  ///< where points are looked for again in a step
   std::map<Place, std::pair<double, Vec3d>> trial;  ///< of a long step: impulses of the last iteration [N s]
   /// What a step needs of a bond. The vessel stands still.
   struct Hold {
@@ -332,7 +332,8 @@ void Container::State::add_holds(const InteractionStep& step, RowGroup& rows) co
   for (const Hold& hold : holds) {
     const std::uint32_t place = step.place_of[hold.vertex];
     if (place == InteractionStep::kNowhere) continue;
-    rows.holds.push_back({.place = place, .velocity = (hold.there - step.position(place)) * (1.0 / step.h), .tool = {}});
+    rows.holds.push_back(
+        {.place = place, .velocity = (hold.there - step.position(place)) * (1.0 / step.h), .tool = ToolVelocity{}});
   }
 }
 
@@ -477,7 +478,8 @@ std::shared_ptr<const void> Container::save_state() const {
   const State& s = *state_;
   std::vector<Vec3d> forces;
   for (const State::Hold& hold : s.holds) forces.push_back(hold.force);
-  return std::make_shared<const SavedContainer>(SavedContainer{s, std::move(forces), s.reach.seen(), s.account.taken()});
+  return std::make_shared<const SavedContainer>(
+      SavedContainer{s, std::move(forces), s.reach.seen(), s.account.taken()});
 }
 
 void Container::load_state(const std::shared_ptr<const void>& state, const BodyView* other_body) {

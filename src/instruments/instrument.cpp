@@ -7,9 +7,9 @@
 #include <stdexcept>
 
 #include "base/require_fields.h"
+#include "contact/shape_traits.h"
 #include "glisson/archive.h"
 #include "glisson/simulation/integrator.h"
-#include "contact/shape_traits.h"
 #include "instruments/motion/end_search.h"
 
 namespace glisson {

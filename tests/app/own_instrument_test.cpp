@@ -35,7 +35,7 @@ class Magnet final : public Instrument {
     if (round > 0) return;
     drive(step);
     forces_ = {.normal = {0, 0, kPull}};
-    rows.push(step.place_of[vertex_], forces_.normal * step.h, WorkSink::contact, {});
+    rows.push(step.place_of[vertex_], forces_.normal * step.h);
   }
   void archive(Archive& ar) override { archive_motion(ar); }
 

@@ -29,7 +29,7 @@ struct Probe final : Interaction {
     w.elastic += force - w.displacement * spring;
   }
   void declare(const InteractionStep& step, StepRows& rows, int round) override {
-    if (holds && round == 0) rows.hold(step.place_of[vertex], {}, {});
+    if (holds && round == 0) rows.hold(step.place_of[vertex], {});
   }
   void solved(const InteractionStep& step, const StepRows& rows) override {
     if (holds) given = rows.holding_impulse(0) * (1.0 / step.h);
@@ -161,7 +161,7 @@ TEST(Interaction, SupportsBearIt) {
     std::uint32_t vertex = 0;
     std::span<const std::uint32_t> reach(double, double) override { return {&vertex, 1}; }
     void declare(const InteractionStep& step, StepRows& rows, int round) override {
-      if (round == 0) rows.push(step.place_of[0], Vec3d{0, 0, -0.5} * step.h, WorkSink::contact, {});
+      if (round == 0) rows.push(step.place_of[0], Vec3d{0, 0, -0.5} * step.h);
     }
   };
   s.attach(std::make_shared<Push>());

@@ -1,8 +1,8 @@
 // A shape's distance is that to its surface, negative inside, with its gradient as normal; what is no shape is refused.
 #include <random>
 
-#include "glisson/instruments/tool_motion.h"
 #include "contact/shape_traits.h"
+#include "glisson/instruments/tool_motion.h"
 #include "instruments/contact_scenes.h"
 
 namespace glisson::shape_test {

@@ -30,8 +30,8 @@ using Tools = std::vector<std::shared_ptr<Interaction>>;
 struct Together {
   std::string name;
   std::function<Tools()> tools;
-  double end = 0.05;  ///< [s]
-  bool fixed = true;  ///< its bottom is
+  double end = 0.05;      ///< [s]
+  bool fixed = true;      ///< its bottom is
   bool collides = false;  ///< tools meet each other, so that not all can be met
   friend std::ostream& operator<<(std::ostream& out, const Together& x) { return out << x.name; }
 };
@@ -71,22 +71,29 @@ const Vec3d kMiddle{0.5 * kSize.x, 0.5 * kSize.y, kSize.z};
 std::vector<Together> scenes() {
   return {
       {.name = "ball_above_and_plate_beside_an_edge",
-       .tools = [] {
-         return Tools{solid("ball", Ball{.radius = 0.008}, kMiddle + Vec3d{0.5 * kSize.x - 0.003, 0, 1e-4}, {0, 0, -0.05}, 0.3),
-                      solid("plate", Plate{}, {kSize.x + 1e-4, kMiddle.y, 0.0}, {-0.04, 0, 0}, 0.2)};
-       }},
+       .tools =
+           [] {
+             return Tools{solid("ball", Ball{.radius = 0.008}, kMiddle + Vec3d{0.5 * kSize.x - 0.003, 0, 1e-4},
+                                {0, 0, -0.05}, 0.3),
+                          solid("plate", Plate{}, {kSize.x + 1e-4, kMiddle.y, 0.0}, {-0.04, 0, 0}, 0.2)};
+           }},
       {.name = "needle_under_a_pressing_plate",
-       .tools = [] {
-         return Tools{needle("needle", kMiddle + Vec3d{0.001, 0.0007, 1e-4}, {0, 0, -0.15}),
-                      solid("plate", Plate{}, kMiddle + Vec3d{0, 0, 2e-4}, {0, 0, -0.05})};
-       }},
+       .tools =
+           [] {
+             return Tools{needle("needle", kMiddle + Vec3d{0.001, 0.0007, 1e-4}, {0, 0, -0.15}),
+                          solid("plate", Plate{}, kMiddle + Vec3d{0, 0, 2e-4}, {0, 0, -0.05})};
+           }},
       {.name = "blade_beside_a_bonded_tool",
-       .tools = [] {
-         BladeOptions o;
-         o.name = "blade", o.edge_from = {0, -0.03, 0}, o.edge_to = {0, 0.03, 0}, o.toughness = 5.0, o.cut_every = 0.0;
-         auto blade = std::make_shared<Blade>(o, along({kMiddle + Vec3d{0.0013, 0, 1e-4}}, {0, 0, -0.1}));
-         return Tools{solid("bonded", FlatPunch{.radius = 0.006}, kMiddle + Vec3d{-0.005, 0, 0}, {0, 0, -0.02}, 0.0, true), blade};
-       }},
+       .tools =
+           [] {
+             BladeOptions o;
+             o.name = "blade", o.edge_from = {0, -0.03, 0}, o.edge_to = {0, 0.03, 0}, o.toughness = 5.0,
+             o.cut_every = 0.0;
+             auto blade = std::make_shared<Blade>(o, along({kMiddle + Vec3d{0.0013, 0, 1e-4}}, {0, 0, -0.1}));
+             return Tools{
+                 solid("bonded", FlatPunch{.radius = 0.006}, kMiddle + Vec3d{-0.005, 0, 0}, {0, 0, -0.02}, 0.0, true),
+                 blade};
+           }},
       {.name = "corner_of_a_rough_container",
        .tools =
            [] {
@@ -99,23 +106,29 @@ std::vector<Together> scenes() {
            },
        .fixed = false},
       {.name = "bonded_patch_under_a_ball",
-       .tools = [] {
-         return Tools{solid("patch", FlatPunch{.radius = 0.006}, kMiddle, {0, 0.02, 0}, 0.0, true),
-                      solid("ball", Ball{.radius = 0.012}, kMiddle + Vec3d{0.004, 0, 1e-4}, {0, 0, -0.05}, 0.4)};
-       },
+       .tools =
+           [] {
+             return Tools{solid("patch", FlatPunch{.radius = 0.006}, kMiddle, {0, 0.02, 0}, 0.0, true),
+                          solid("ball", Ball{.radius = 0.012}, kMiddle + Vec3d{0.004, 0, 1e-4}, {0, 0, -0.05}, 0.4)};
+           },
        .end = 0.03,
        .collides = true},
       {.name = "two_needles_whose_zones_overlap",
-       .tools = [] {
-         return Tools{needle("first", kMiddle + Vec3d{0.001, 0.0007, 1e-4}, {0, 0, -0.15}),
-                      needle("second", kMiddle + Vec3d{0.004, 0.0021, 2e-4}, {0.01, 0, -0.15})};
-       }},
+       .tools =
+           [] {
+             return Tools{needle("first", kMiddle + Vec3d{0.001, 0.0007, 1e-4}, {0, 0, -0.15}),
+                          needle("second", kMiddle + Vec3d{0.004, 0.0021, 2e-4}, {0.01, 0, -0.15})};
+           }},
       {.name = "three_balls_on_a_corner",
-       .tools = [] {
-         return Tools{solid("x", Ball{.radius = 0.01}, {kSize.x + 1e-4, kSize.y - 0.002, kSize.z - 0.002}, {-0.04, 0, 0}, 0.5),
-                      solid("y", Ball{.radius = 0.01}, {kSize.x - 0.002, kSize.y + 1e-4, kSize.z - 0.002}, {0, -0.04, 0}, 0.5),
-                      solid("z", Ball{.radius = 0.01}, {kSize.x - 0.002, kSize.y - 0.002, kSize.z + 1e-4}, {0, 0, -0.04}, 0.5)};
-       }},
+       .tools =
+           [] {
+             return Tools{solid("x", Ball{.radius = 0.01}, {kSize.x + 1e-4, kSize.y - 0.002, kSize.z - 0.002},
+                                {-0.04, 0, 0}, 0.5),
+                          solid("y", Ball{.radius = 0.01}, {kSize.x - 0.002, kSize.y + 1e-4, kSize.z - 0.002},
+                                {0, -0.04, 0}, 0.5),
+                          solid("z", Ball{.radius = 0.01}, {kSize.x - 0.002, kSize.y - 0.002, kSize.z + 1e-4},
+                                {0, 0, -0.04}, 0.5)};
+           }},
   };
 }
 
@@ -167,7 +180,8 @@ TEST_P(TogetherTest, TheOrderOfAttachmentDoesNotMatter) {
     ASSERT_EQ(hash(a.body), hash(b.body)) << a.body.time();
   }
   for (std::size_t k = 0; k < a.tools.size(); ++k) {
-    const auto *x = dynamic_cast<const Instrument*>(a.tools[k].get()), *y = dynamic_cast<const Instrument*>(b.tools[k].get());
+    const auto *x = dynamic_cast<const Instrument*>(a.tools[k].get()),
+               *y = dynamic_cast<const Instrument*>(b.tools[k].get());
     if (x == nullptr) continue;
     EXPECT_EQ(norm(x->force() - y->force()), 0.0) << x->name();
     largest = std::max(largest, norm(x->force()));
@@ -206,7 +220,8 @@ TEST(TogetherBlocks, CloseOnAVertexWithTheLeastViolation) {
   Simulation body(mesh, {{0, Scene::tissue()}}, options);
   body.fix(std::vector<std::uint32_t>{0, 1, 2});
   const Block block{.size = {0.004, 0.004, 0.004}};
-  const auto left = solid("left", block, {-1e-4, 0, 0.0119}, {0.02, 0, 0}), right = solid("right", block, {1e-4, 0, 0.0119}, {-0.02, 0, 0});
+  const auto left = solid("left", block, {-1e-4, 0, 0.0119}, {0.02, 0, 0}),
+             right = solid("right", block, {1e-4, 0, 0.0119}, {-0.02, 0, 0});
   body.attach(left), body.attach(right);
   const auto depth = [&](const ContactTool& tool) {
     return -distance_to(tool.options().shape, tool.pose().to_own(body.positions()[3])).distance;
@@ -221,7 +236,7 @@ TEST(TogetherBlocks, CloseOnAVertexWithTheLeastViolation) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, TogetherTest, ::testing::ValuesIn(scenes()),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& one) { return one.param.name; });
 
 }  // namespace
 }  // namespace glisson::together_test

@@ -88,7 +88,7 @@ void GrabSpring::declare(const InteractionStep& step, StepRows& rows, int round)
     const ActiveVertex& v = step.vertices[place];
     Vec3d missing = (held_at_[i] + gone_ - v.displacement) * (1.0 / step.h) - v.velocity;
     if (const double kick = norm(missing); kick > kMostKick) missing = missing * (kMostKick / kick);
-    rows.hold(place, v.velocity + missing, {});
+    rows.hold(place, v.velocity + missing);
     ++row_count_;
   }
 }

@@ -49,8 +49,8 @@ class GrabSpring final : public Interaction {
   Hold how_ = Hold::springs;
   Vec3d way_{}, force_{};
   std::size_t row_count_ = 0;  // in this step
-  Vec3d gone_{};        // of the way where it is bonded [m] …
-  double speed_ = 0.0;  // … and how fast it goes on [m/s]
+  Vec3d gone_{};               // of the way where it is bonded [m] …
+  double speed_ = 0.0;         // … and how fast it goes on [m/s]
 };
 
 /// Vertices within a ball about one of them that hang together with it there: a cut through the ball parts them.

@@ -8,14 +8,26 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "glisson/math.h"
 
 namespace glisson {
 
 struct RowGroup;
-struct ToolVelocity;
-enum class WorkSink;
+
+/// Where the part of a tool's work goes that the tissue does not receive.
+enum class WorkSink {
+  contact,   ///< impulses along the normal: an impact, tissue that is pushed out
+  friction,  ///< slip
+  fracture   ///< cutting
+};
+
+/// Velocity of a tool's material at a point, before and after the time of the forces [m/s].
+struct ToolVelocity {
+  Vec3d before{};  ///< V₋, of the last step; 0 in the first
+  Vec3d after{};   ///< V₊, of this step
+};
 
 /// The rows of one tool in a step; the engine empties it before declare().
 class StepRows {
@@ -27,11 +39,12 @@ class StepRows {
 
   /// Holds a vertex: it ends the step with this velocity, whatever impulse that takes; components that a support holds stay.
   /// Where several tools hold a vertex, it gets the mean of what they want.
-  /// @param place  among the active vertices @param velocity  [m/s] @param tool  of the tool's material there, for the energy ledger
+  /// @param place  among the active vertices @param velocity  [m/s]
+  /// @param tool  velocity of the tool's material there, for the energy ledger; none: it moves with the tissue
   /// @return its number, for holding_impulse()
-  std::size_t hold(std::uint32_t place, const Vec3d& velocity, const ToolVelocity& tool);
-  /// Gives a vertex an impulse [N s], in the components that may move. @param sink  where work goes that the tissue does not receive
-  void push(std::uint32_t place, const Vec3d& impulse, WorkSink sink, const ToolVelocity& tool);
+  std::size_t hold(std::uint32_t place, const Vec3d& velocity, const std::optional<ToolVelocity>& tool = {});
+  /// Gives a vertex an impulse [N s], in the components that may move; for the energy ledger by a tool that moves with the tissue.
+  void push(std::uint32_t place, const Vec3d& impulse);
   /// What a held vertex was given, in solved() [N s]. @throws std::out_of_range
   Vec3d holding_impulse(std::size_t row) const;
   std::size_t hold_count() const;

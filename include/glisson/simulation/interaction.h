@@ -47,13 +47,6 @@ struct BodyView {
   bool is_removed(std::size_t tet) const { return !removed.empty() && removed[tet] != 0; }
 };
 
-/// Where the part of a tool's work goes that the tissue does not receive.
-enum class WorkSink {
-  contact,   ///< impulses along the normal: an impact, tissue that is pushed out
-  friction,  ///< slip
-  fracture   ///< cutting
-};
-
 /// Impulses between tools and tissue in a step, by WorkSink: filled by InteractionStep::book.
 struct InterfaceBook {
   struct Page {
@@ -73,12 +66,6 @@ struct InterfaceBook {
       pages[k].tools_before += other.pages[k].tools_before, pages[k].tools_after += other.pages[k].tools_after;
     }
   }
-};
-
-/// Velocity of a tool's material at a point, before and after the time of the forces [m/s].
-struct ToolVelocity {
-  Vec3d before{};  ///< V₋, of the last step; 0 in the first
-  Vec3d after{};   ///< V₊, of this step
 };
 
 /// Stiffness between the corners of a triangle of the surface: a displacement of corner b adds −K(a, b) of it to the force on corner a.

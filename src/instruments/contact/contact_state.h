@@ -47,16 +47,16 @@ struct ContactTool::State : ContactKept {
   ContactSolid solid;
   ContactReach reach;
 
-  bool settled = true;              ///< the last sweeps of a long step did not come to their limit
-  int unsettled = 0;                ///< iterations of it in which they did
-  std::vector<Vec3d> starts, ends;  ///< per vertex of the reach, in the frame of the tool
-  std::vector<double> at_ends;      ///< φ there
+  bool settled = true;                 ///< the last sweeps of a long step did not come to their limit
+  int unsettled = 0;                   ///< iterations of it in which they did
+  std::vector<Vec3d> starts, ends;     ///< per vertex of the reach, in the frame of the tool
+  std::vector<double> at_ends;         ///< φ there
   std::vector<std::uint32_t> touched;  ///< vertices of the reach that rows move, as places there
   std::vector<Vec3d> exerted;          ///< per vertex of the reach: whole impulse in this step [N s]
   Effort effort{};
 
   WorkAccount account;
-  int looks = 0;  ///< for triangles, in this step
+  int looks = 0;                                        ///< for triangles, in this step
   std::map<Triangle, std::vector<BearingPoint>> trial;  ///< of a long step: what its iterations have found
   std::vector<char> has_row, moves;                     ///< per vertex of the reach: has a row of its own; is in a row
   std::vector<HeldTriangle> held;                       ///< per triangle of the reach

@@ -83,8 +83,8 @@ std::span<const std::uint32_t> Blade::reach(double, double) {
 }
 
 /// A piece gives its tissue up to G l h along the edge's path through it, or as much less as takes it along.
-void Blade::add_disc(const InteractionStep& step, const EdgePiece& piece, const BladeEdge& before, const BladeEdge& after,
-                     RowGroup& rows) const {
+void Blade::add_disc(const InteractionStep& step, const EdgePiece& piece, const BladeEdge& before,
+                     const BladeEdge& after, RowGroup& rows) const {
   DiscRow row;
   Vec3d at{};
   for (std::size_t c = 0; c < 4; ++c) {

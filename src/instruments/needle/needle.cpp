@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "base/require_fields.h"
-#include "glisson/simulation/simulation.h"
 #include "contact/row_group.h"
+#include "glisson/simulation/simulation.h"
 #include "instruments/needle/cantilever.h"
 #include "instruments/needle/needle_solver.h"
 
@@ -91,7 +91,8 @@ void Needle::Solver::find_rows(const InteractionStep& step) {
 /// The rows as a block of a short step: the tissue stays on the bent needle, all but a tip that cuts.
 shaft::Block Needle::Solver::block(const InteractionStep& step, const ToolVelocity& tool) {
   const bool cuts = has_tip && s.tip_cuts;
-  shaft::Block b{.direction = d, .velocity = needle_velocity(), .tool = tool, .h = h, .held = all.size() - (cuts ? 1 : 0)};
+  shaft::Block b{
+      .direction = d, .velocity = needle_velocity(), .tool = tool, .h = h, .held = all.size() - (cuts ? 1 : 0)};
   for (const shaft::Row* row : all) b.add(*row);
   b.friction = s.options.friction;
   b.W = s.mobility.of(step, s.nodes, node, has_tip ? &s.tip : nullptr);

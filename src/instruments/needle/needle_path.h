@@ -13,8 +13,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "glisson/archive.h"
 #include "contact/shaft_block.h"
+#include "glisson/archive.h"
 #include "instruments/needle/tissue_zone.h"
 
 namespace glisson {

@@ -125,7 +125,7 @@ struct Needle::State : NeedleKept {
   std::vector<TissueInterval> intervals_left(std::span<const Vec3d> points, std::span<const double> along) const;
   bool keep_what_is_left(std::size_t track, NeedlePath& kept) const;
   void cross_anew(const BodyView& body, const Vec3d& at, const Vec3d& direction);
-  double bending_stiffness() const;                       ///< E I [N m²]; 0: rigid
+  double bending_stiffness() const;  ///< E I [N m²]; 0: rigid
   TipResistance resistance(int region_number) const;
   double cutting() const;    ///< where the tip is [N]
   double tip_limit() const;  ///< [N]
