@@ -98,15 +98,9 @@ class OwnStep {
     for (const ActiveVertex& w : get().vertices) numbers.push_back(w.vertex);
     return indices(std::move(numbers));
   }
-  /// Places of vertices, and as many vectors.
-  std::pair<std::vector<std::uint32_t>, std::vector<Vec3d>> placed(nb::handle which, const ArrayLike& given,
-                                                                   const char* name) const {
+  /// Places of vertices.
+  std::vector<std::uint32_t> places(nb::handle which) const {
     std::vector<std::uint32_t> places = to_indices(which, 1, "vertices");
-    std::vector<Vec3d> values = to_vectors(given, name);
-    if (places.size() != values.size()) {
-      throw nb::value_error(
-          (std::to_string(places.size()) + " vertices, but " + std::to_string(values.size()) + " " + name).c_str());
-    }
     for (std::uint32_t& v : places) {
       const std::uint32_t place = v < get().place_of.size() ? get().place_of[v] : InteractionStep::kNowhere;
       if (place == InteractionStep::kNowhere) {
@@ -114,7 +108,18 @@ class OwnStep {
       }
       v = place;
     }
-    return {std::move(places), std::move(values)};
+    return places;
+  }
+  /// Places of vertices, and as many vectors.
+  std::pair<std::vector<std::uint32_t>, std::vector<Vec3d>> placed(nb::handle which, const ArrayLike& given,
+                                                                   const char* name) const {
+    std::vector<std::uint32_t> where = places(which);
+    std::vector<Vec3d> values = to_vectors(given, name);
+    if (where.size() != values.size()) {
+      throw nb::value_error(
+          (std::to_string(where.size()) + " vertices, but " + std::to_string(values.size()) + " " + name).c_str());
+    }
+    return {std::move(where), std::move(values)};
   }
   void add_force(nb::handle which, const ArrayLike& forces, bool viscous) const {
     const auto [places, values] = placed(which, forces, "forces");
@@ -142,13 +147,27 @@ class OwnRows {
     const auto [places, values] = step().placed(which, impulses, "impulses");
     for (std::size_t k = 0; k < places.size(); ++k) rows().push(places[k], values[k]);
   }
-  Doubles impulses() const {
-    std::vector<Vec3d> values;
-    for (std::size_t k = 0; k < rows().hold_count(); ++k) values.push_back(rows().holding_impulse(k));
-    return vectors(std::move(values));
+  void press(nb::handle which, const Vec3d& point, const Vec3d& normal, const Vec3d& velocity, double friction) const {
+    if (!(norm(normal) > 0.0)) throw nb::value_error("normal is zero; give the direction that leads out of the wall");
+    if (!(friction >= 0.0)) throw nb::value_error("friction must be 0 or more");
+    for (const std::uint32_t place : step().places(which)) {
+      rows().press(step().get(), place, {.point = point, .normal = normal, .velocity = velocity, .friction = friction});
+    }
+  }
+  Doubles held() const {
+    return each(rows().hold_count(), [&](std::size_t k) { return rows().holding_impulse(k); });
+  }
+  Doubles pressed() const {
+    return each(rows().press_count(), [&](std::size_t k) { return rows().pressing_impulse(k); });
   }
 
  private:
+  template <class Read>
+  Doubles each(std::size_t count, const Read& read) const {
+    std::vector<Vec3d> values;
+    for (std::size_t k = 0; k < count; ++k) values.push_back(read(k));
+    return vectors(std::move(values));
+  }
   const OwnStep& step() const {
     if (step_ == nullptr) throw std::runtime_error("the step is over: use rows in declare and solved, and keep copies");
     return *step_;
@@ -296,9 +315,17 @@ void bind_step(nb::module_& m) {
           "what a support holds stays. A vertex that several tools hold gets the mean of what they want.")
       .def("push", &OwnRows::push, "vertices"_a, "impulses"_a,
            "In declare: impulses [N s], (n, 3), on active vertices; held components do not move.")
+      .def("press", &OwnRows::press, "vertices"_a, "point"_a, "normal"_a, "velocity"_a = Vec3d{}, "friction"_a = 0.0,
+           "In declare: active vertices end the step outside a wall, with Coulomb's friction.\n\n"
+           ":param point: on the wall at the start of the step [m]\n:param normal: outward, of any length\n"
+           ":param velocity: of the wall [m/s]")
       .def_prop_ro(
-          "impulses", &OwnRows::impulses,
-          "In solved: impulses on the vertices that were held, (n, 3), in the order in which they were declared [N s]");
+          "held", &OwnRows::held,
+          "In solved: impulses on the vertices that were held, (n, 3), in the order in which they were declared [N s]")
+      .def_prop_ro(
+          "pressed", &OwnRows::pressed,
+          "In solved: impulses of walls, (n, 3), in the order in which vertices were declared; 0 for those that "
+          "did not come near [N s]");
 }
 
 constexpr const char* kInteraction =

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/two_across.h"
 #include "glisson/contact/step_rows.h"
 
 namespace glisson {
@@ -9,6 +10,7 @@ namespace glisson {
 void RowGroup::clear() {
   earlier.swap(points);
   points.clear(), holds.clear(), discs.clear(), pushes.clear();
+  walls.clear(), pressed.clear();
   shaft.reset();
   account = nullptr;
   has_impulses = others_act = corrected = false;
@@ -54,6 +56,33 @@ void StepRows::push(std::uint32_t place, const Vec3d& impulse) {
   group_->pushes.push_back({.place = place, .impulse = impulse});
 }
 
+std::size_t StepRows::press(const InteractionStep& step, std::uint32_t place, const Wall& wall) {
+  static const Shape half_space = Plate{};  // all of z ≥ 0 in its own frame
+  const Vec3d z = unit(wall.normal) * -1.0;
+  const auto [x, y] = two_across(z);
+  ContactSolid& solid = group_->walls.emplace_back();
+  solid.shape = &half_space, solid.traits = traits_of(half_space), solid.friction = wall.friction;
+  for (std::size_t i = 0; i < 3; ++i) {
+    solid.before.axes(i, 0) = x[i], solid.before.axes(i, 1) = y[i], solid.before.axes(i, 2) = z[i];
+  }
+  solid.before.position = wall.point;
+  solid.after = solid.earlier = solid.before;
+  solid.after.position += wall.velocity * step.h, solid.earlier.position -= wall.velocity * step.h;
+  solid.last_h = step.h;
+  ContactRow row;
+  row.places[0] = place, row.solid = &solid;
+  const bool comes_near = prepare(row, step);
+  if (comes_near) group_->points.push_back(row);
+  group_->pressed.push_back(comes_near ? std::optional(group_->points.size() - 1) : std::nullopt);
+  return group_->pressed.size() - 1;
+}
+
+Vec3d StepRows::pressing_impulse(std::size_t row) const {
+  const std::optional<std::size_t>& point = group_->pressed.at(row);
+  return point ? group_->points[*point].impulse() : Vec3d{};
+}
+
+std::size_t StepRows::press_count() const { return group_->pressed.size(); }
 std::size_t StepRows::hold_count() const { return group_->holds.size(); }
 Vec3d StepRows::holding_impulse(std::size_t row) const { return group_->holds.at(row).impulse; }
 

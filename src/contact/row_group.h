@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <span>
 #include <vector>
@@ -56,6 +57,9 @@ struct RowGroup {
   std::vector<DiscRow> discs;
   std::vector<GivenRow> pushes;
   std::optional<shaft::Block> shaft;
+  std::deque<ContactSolid> walls;  ///< of StepRows::press
+  std::vector<std::optional<std::size_t>>
+      pressed;                      ///< per call of it: the row among the points; none: it did not come near
   WorkAccount* account = nullptr;   ///< of the points
   std::vector<ContactRow> earlier;  ///< points before clear()
   bool has_impulses = false;        ///< in a long step: the points have their impulses already, and are not solved for

@@ -25,12 +25,15 @@ constexpr std::uint32_t kNoTool = std::numeric_limits<std::uint32_t>::max();
 /// What a row of points is known by, whoever declared it.
 auto key_of(const ContactRow& row) {
   const auto numbers = [](const Vec3d& x) { return std::array{x.x, x.y, x.z}; };
-  return std::tuple(row.count, row.places, row.weights, numbers(row.normal), numbers(row.origin), row.solid->friction);
+  return std::tuple(row.count, row.places, row.weights, numbers(row.normal), numbers(row.carried), row.level,
+                    row.allowance, row.solid->friction);
 }
 
 auto key_of(const DiscRow& row) {
   return std::tuple(row.places, row.weights, row.velocity.x, row.velocity.y, row.velocity.z);
 }
+
+auto key_of(const GivenRow& row) { return std::tuple(row.place, row.impulse.x, row.impulse.y, row.impulse.z); }
 
 auto key_of(const shaft::Block& block) {
   const shaft::Row& row = *block.rows.front();
@@ -142,16 +145,17 @@ void StepSolver::find_islands(const InteractionStep& step) {
 
 /// Lists the rows of an island; those of several tools in an order of their own.
 void StepSolver::gather(Island& island, const InteractionStep& step) {
-  island.points.clear(), island.discs.clear(), island.shafts.clear(), island.holds.clear();
+  island.points.clear(), island.discs.clear(), island.shafts.clear(), island.holds.clear(), island.pushes.clear();
   for (const std::size_t k : island.tools) {
     RowGroup& rows = group(k);
     for (ContactRow& row : rows.points) island.points.push_back(&row);
     for (DiscRow& row : rows.discs) island.discs.push_back(&row);
     for (HoldRow& row : rows.holds) island.holds.push_back(&row);
+    for (GivenRow& row : rows.pushes) island.pushes.push_back(&row);
     if (rows.shaft && !rows.shaft->rows.empty()) island.shafts.push_back(&*rows.shaft);
   }
   if (island.tools.size() == 1) return;
-  sort_rows(island.points), sort_rows(island.discs), sort_rows(island.shafts);
+  sort_rows(island.points), sort_rows(island.discs), sort_rows(island.shafts), sort_rows(island.pushes);
   for (shaft::Block* block : island.shafts) block->find_places(step);
   join_holds(island);
 }
@@ -186,10 +190,8 @@ void StepSolver::share_out(Island& island) {
 
 /// Impulses that rows begin with.
 void StepSolver::begin_rows(Island& island, const InteractionStep& step) {
-  for (const std::size_t k : island.tools) {
-    for (GivenRow& row : group(k).pushes) {
-      if (std::exchange(row.is_new, false)) step.push(row.place, row.impulse);
-    }
+  for (GivenRow* row : island.pushes) {
+    if (std::exchange(row->is_new, false)) step.push(row->place, row->impulse);
   }
   for (ContactRow* row : island.points) {
     row->solved_at = 0;
@@ -301,7 +303,11 @@ void StepSolver::solve(Island& island, const InteractionStep& step) {
   std::copy_if(island.tools.begin(), island.tools.end(), std::back_inserter(overdrawn), is_overdrawn);
   if (!overdrawn.empty()) {
     for (ContactRow* row : island.points) row->solved_at = 0;
-    for (const std::size_t k : overdrawn) begin_anew(group(k).points, before_, step), group(k).corrected = true;
+    for (const std::size_t k : overdrawn) {
+      begin_anew(group(k).points, before_, step);
+      for (const ContactRow& row : group(k).points) clock_.push(places_of(row));
+      group(k).corrected = true;
+    }
     sweeps += settle(island, step);
     for (const std::size_t k : overdrawn) {
       if (is_overdrawn(k)) shrink(group(k).points, before_, step);

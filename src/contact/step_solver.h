@@ -42,6 +42,7 @@ class StepSolver {
     std::vector<ContactRow*> points;
     std::vector<DiscRow*> discs;
     std::vector<shaft::Block*> shafts;
+    std::vector<GivenRow*> pushes;
     std::vector<HoldRow*> holds;  ///< one per place
     std::vector<std::pair<HoldRow*, std::uint32_t>>
         given_by;  ///< all of several tools, and of which of `holds` each is a part

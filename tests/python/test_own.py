@@ -178,7 +178,7 @@ def test_impulses_hold_a_vertex():
             rows.hold([self.vertex], [[0, 0, 0]])
 
         def solved(self, step, rows):
-            self.force = rows.impulses[0] / step.h
+            self.force = rows.held[0] / step.h
 
     pin = Pin()
     body, _ = loaded()
@@ -186,6 +186,44 @@ def test_impulses_hold_a_vertex():
     body.attach(pin)
     body.advance(0.2)
     assert np.abs(body.displacement[pin.vertex]).max() < 1e-12 < np.abs(body.displacement).max()
+
+
+def test_a_wall_of_ones_own_presses():
+    """A wall that comes down on the top keeps it where a plate does, and has the plate's force."""
+    mesh = glisson.box_mesh(cells=[3, 3, 3], size=[0.03, 0.03, 0.03])
+    top = mesh.vertex_sets["z_max"]
+
+    class Lid(glisson.OwnInteraction):
+        z = 0.0301
+        force = np.zeros(3)
+
+        def reach(self, time, h):
+            return top
+
+        def declare(self, step, rows):
+            rows.press(top, [0, 0, self.z], [0, 0, -1], velocity=[0, 0, -0.02], friction=0.1)
+            self.z -= 0.02 * step.h
+
+        def solved(self, step, rows):
+            self.force = rows.pressed.sum(axis=0) / step.h
+
+    def body_under(tool):
+        body = glisson.Simulation(mesh, glisson.Tissue(), glisson.SimulationOptions(damping_rate=50.0))
+        body.fix("z_min")
+        body.attach(tool)
+        body.advance(0.1)
+        return body
+
+    lid = Lid()
+    down = glisson.SteadyMotion(direction=[0, 0, -1], velocity=0.02)
+    plate = glisson.ContactTool(
+        glisson.ContactOptions(shape=glisson.Plate(), friction=0.1),
+        glisson.PathDriver(glisson.Pose(position=[0.015, 0.015, 0.0301]), down),
+    )
+    own, built_in = body_under(lid), body_under(plate)
+    assert np.abs(own.displacement - built_in.displacement).max() < 1e-9
+    assert abs(lid.force[2] - plate.force[2]) < 1e-6 * abs(plate.force[2])
+    assert plate.force[2] < -0.1
 
 
 def test_mistakes_of_an_interaction_are_told():

@@ -48,6 +48,11 @@ void StepContact::add(std::shared_ptr<Interaction> interaction) {
   interactions_.keep_all();
   forces_.own.emplace_back();
   pushes_means_.push_back(0);
+  order_.resize(forces_.own.size());
+  std::iota(order_.begin(), order_.end(), std::size_t{0});
+  std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
+    return interactions_.all()[a]->label() < interactions_.all()[b]->label();
+  });
   forces_.total.resize(state_.body.vertex_count);
   for (std::vector<Vec3d>& of_one : forces_.own) of_one.resize(state_.body.vertex_count);
   interactions_.ask_rests();
@@ -226,12 +231,13 @@ double StepContact::find_forces_of(std::size_t interaction) {
   return change;
 }
 
-/// All interactions in turn. @return by how much a force has changed at most, of the largest; 0 where one alone exerts any
+/// All interactions in turn, by their names: the order in which they were attached does not matter. @return by how much a force has changed at most, of the largest; 0 where one alone exerts any
 double StepContact::find_forces() {
   interactions_.clear_impulses();
   double change = 0.0, largest = 0.0;
   int exerting = 0;
-  for (std::size_t i = 0; i < forces_.own.size() && !exhausted_; ++i) {
+  for (std::size_t k = 0; k < order_.size() && !exhausted_; ++k) {
+    const std::size_t i = order_[k];
     if (interactions_.all()[i]->constrains_long_steps()) change = std::max(change, find_forces_of(i));
     double own = 0.0;
     for (const Vec3d& f : forces_.own[i]) own = std::max(own, norm(f));
@@ -242,7 +248,7 @@ double StepContact::find_forces() {
 
 /// Moves u⁺ by what the forces have changed. @param moved  per interaction: P⁻¹ of the forces known; empty: not asked for
 void StepContact::move_by_change(std::span<Vec3d> u, const ExertedForces& known, std::span<Eigen::VectorXd> moved) {
-  for (std::size_t i = 0; i < forces_.own.size(); ++i) {
+  for (const std::size_t i : order_) {
     if (pushes_means_[i] != 0) {
       if (moved[i].size() == 0) moved[i] = response(i, known.own[i]);
       flat(u) += response(i, forces_.own[i]) - moved[i];
@@ -284,7 +290,7 @@ bool StepContact::correct(std::span<Vec3d> u) {
   if (exhausted_) return false;
   forces_.total.assign(u.size(), Vec3d{});
   for (const ActiveVertex& w : active_) {
-    for (const std::vector<Vec3d>& own : forces_.own) forces_.total[w.vertex] += own[w.vertex];
+    for (const std::size_t i : order_) forces_.total[w.vertex] += forces_.own[i][w.vertex];
   }
   move_by_change(u, known, moved);
   return true;

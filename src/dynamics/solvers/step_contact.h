@@ -156,6 +156,7 @@ class StepContact final : public StepCompliance {
   std::set<std::uint32_t> asked_,
       asked_before_;  ///< vertices whose columns were wanted with this factor in this step, and before that
   std::vector<char> pushes_means_;         ///< per interaction
+  std::vector<std::size_t> order_;         ///< in which they have their turns: by their names
   std::size_t acting_ = 0;                 ///< whose turn it is
   std::vector<Column> at_places_;          ///< columns per place, of active vertices; empty: not asked for yet
   std::vector<std::uint32_t> near_, far_;  ///< places that have columns, and the others
