@@ -9,6 +9,7 @@
 namespace glisson::shaft {
 namespace {
 
+constexpr int kMostBreaks = 20;     ///< of a row between solves of a step
 constexpr double kHeldSlip = 0.01;  ///< of the speed of sticking: a row that slips by less is held
 
 /// The part of a vector across a direction.
@@ -200,6 +201,16 @@ void Block::solve_across() {
   }
 }
 
+/// A row that holds more than it would in slip, and gives way, in turn: from some times on it slips.
+void Block::count_breaks(std::span<const double> before) {
+  breaks.resize(rows.size(), 0);
+  for (std::size_t j = 0; j < rows.size() && !is_new; ++j) {
+    const double in_slip = h * limits[j].length * (before[j] > 0.0 ? friction.dynamic_in : friction.dynamic_out);
+    const bool held_more = !limits[j].is_tip && std::abs(before[j]) > in_slip;
+    if (held_more && std::abs(along[j]) < std::abs(before[j]) && ++breaks[j] >= kMostBreaks) limits[j].slips = true;
+  }
+}
+
 double Block::solve(const InteractionStep& step) {
   if (!places.empty()) take_off(step);
   const std::vector<Vec3d> across_before = across;
@@ -208,6 +219,7 @@ double Block::solve(const InteractionStep& step) {
   std::vector<double> speed;
   for (std::size_t j = 0; j < rows.size(); ++j) speed.push_back(dot(velocity - tissue[j], direction) - closing[j]);
   slips = solve_along(W, speed, limits, friction, h, along);
+  count_breaks(along_before);
   double change = 0.0;
   for (std::size_t j = 0; j < rows.size(); ++j) {
     push(step, *rows[j], across[j] + direction * along[j]);

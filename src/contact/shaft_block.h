@@ -96,6 +96,7 @@ struct Block {
   std::vector<Vec3d> across{};  ///< impulses [N s]; those of rows that are not held are given
   std::vector<double> along{};  ///< impulses, at first where to begin [N s]
   std::vector<char> slips{};    ///< per row
+  std::vector<int> breaks{};    ///< per row: how often it came from sticking to slip between solves of this step
 
   std::vector<Vec3d> tissue{};          ///< velocity of each row without the shaft [m/s]
   std::vector<std::uint32_t> places{};  ///< that its rows move, each once; filled where other tools act on some of them
@@ -116,6 +117,7 @@ struct Block {
   bool tip_cuts() const { return limits.back().is_tip && sinks.back() == WorkSink::fracture && slips.back() != 0; }
   void solve_across();
   void take_off(const InteractionStep& step);
+  void count_breaks(std::span<const double> before);
 };
 
 }  // namespace glisson::shaft

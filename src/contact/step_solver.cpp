@@ -240,6 +240,7 @@ int StepSolver::settle(Island& island, const InteractionStep& step) {
 int StepSolver::settle_together(Island& island, const InteractionStep& step, double enough) {
   double last = 0.0, at_last_look = 0.0;
   bool is_soft = false;
+  const bool can_yield = !island.points.empty() || !island.holds.empty();
   std::vector<Vec3d> before;
   for (int turn = 1; turn <= kMostTurns; ++turn) {
     const bool looks = turn % kLook == 0;
@@ -257,7 +258,7 @@ int StepSolver::settle_together(Island& island, const InteractionStep& step, dou
     const bool may_jump =
         at_last_look == 0.0 || change < kHelps * at_last_look;  // the last jump has led nowhere: on in turns
     at_last_look = change;
-    if (!is_soft && stalls) {
+    if (!is_soft && stalls && can_yield) {
       soften(island);
       is_soft = is_unmet_ = true;
     } else if (may_jump && ratio < 1.0) {

@@ -57,12 +57,14 @@ std::shared_ptr<ContactTool> solid(const std::string& name, const Shape& shape, 
       along({at, pressing(d)}, velocity));
 }
 
-std::shared_ptr<Needle> needle(const std::string& name, const Vec3d& at, const Vec3d& velocity) {
+std::shared_ptr<Needle> needle(const std::string& name, const Vec3d& at, const Vec3d& velocity, double friction = 3.0) {
   NeedleOptions o;
   o.name = name, o.direction = unit(velocity), o.length = 0.06;
   o.zone = 6e-3, o.spacing = 2e-3;
   o.rupture.force = 0.05, o.tip.cutting = 0.03;
-  o.friction.static_in = o.friction.static_out = 3.0, o.friction.dynamic_in = o.friction.dynamic_out = 2.0;
+  o.friction.static_in = o.friction.static_out = friction,
+  o.friction.dynamic_in = o.friction.dynamic_out = 0.6 * friction;
+  o.friction.viscous_in = o.friction.viscous_out = 10.0 * friction;
   return std::make_shared<Needle>(o, along({at}, velocity));
 }
 
@@ -190,6 +192,27 @@ TEST_P(TogetherTest, TheOrderOfAttachmentDoesNotMatter) {
   EXPECT_GT(largest, 0.01);
   EXPECT_EQ(a.body.energies().imbalance(), b.body.energies().imbalance());
   EXPECT_EQ(a.body.energies().friction, b.body.energies().friction);
+}
+
+// Two needles that go into the same tissue share what it bears: once both are inside, their forces are the same to the mesh's lack of
+// symmetry, and the rows of all steps are met. One after the other the last one attached had what the first had not.
+TEST(TogetherNeedles, ShareTheForceOnTissueThatBothHold) {
+  const double aside = 7e-4;
+  const Together pair{.name = "pair", .tools = [aside] {
+                        return Tools{needle("left", kMiddle + Vec3d{-aside, 0, 1e-4}, {0, 0, -0.1}, 18.0),
+                                     needle("right", kMiddle + Vec3d{aside, 0, 1e-4}, {0, 0, -0.1}, 18.0)};
+                      }};
+  const auto force = [](const Scene& s, std::size_t k) { return dynamic_cast<const Needle&>(*s.tools[k]).force().z; };
+  Scene s(pair, false);
+  double left = 0.0, right = 0.0;
+  while (s.body.time() < 0.12) {
+    const StepResult step = s.body.step();
+    ASSERT_TRUE(step.made());
+    EXPECT_TRUE(step.contact_met) << s.body.time();
+    if (s.body.time() > 0.08) left += force(s, 0), right += force(s, 1);
+  }
+  EXPECT_LT(left, 0.0);
+  EXPECT_NEAR(left, right, 0.02 * std::abs(left));
 }
 
 class TogetherInLongSteps : public ::testing::TestWithParam<Together> {};
