@@ -11,6 +11,7 @@
 #include "glisson/instruments/container.h"
 #include "glisson/instruments/cutting.h"
 #include "glisson/instruments/driven_set.h"
+#include "glisson/instruments/ice.h"
 #include "glisson/instruments/motion.h"
 #include "glisson/instruments/needle.h"
 #include "glisson/instruments/rigid_motion.h"

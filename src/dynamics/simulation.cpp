@@ -384,8 +384,9 @@ Energies Simulation::energies() const {
   Energies energies = inside().scheme->energies();
   if (!inside().scheme->state().options.track_energies) return energies;
   for (const auto& x : inside().scheme->interactions()) {
-    energies.elastic -= x->released_energy();
+    energies.elastic += x->changed_energy() - x->released_energy();
     energies.fracture += x->released_energy();
+    energies.changed += x->changed_energy();
   }
   return energies;
 }

@@ -25,7 +25,8 @@ void scatter(const Body& body, std::size_t e, const Mat3d& P, std::span<Vec3d> f
   force[t[0]] -= sum;
 }
 
-/// The nearest matrix whose symmetric part has no negative eigenvalue.
+}  // namespace
+
 void make_semidefinite(ElementTangent& C) {
   const ElementTangent even = 0.5 * (C + C.transpose());
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> solver{Eigen::Matrix<double, 9, 9>(even)};
@@ -33,8 +34,6 @@ void make_semidefinite(ElementTangent& C) {
   const auto& V = solver.eigenvectors();
   C = V * solver.eigenvalues().cwiseMax(0.0).asDiagonal() * V.transpose();
 }
-
-}  // namespace
 
 TissueOperator::TissueOperator(const Body& body, StepKind step) : body_(body), step_(step) { body_changed(); }
 

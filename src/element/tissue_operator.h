@@ -48,6 +48,9 @@ struct TissueState {
 /// ∂P/∂F of every element, row-major 9 × 9: row 3 i + j of P_ij, column 3 k + l of F_kl [Pa].
 using ElementTangent = Eigen::Matrix<double, 9, 9, Eigen::RowMajor>;
 
+/// Goes to the nearest matrix whose symmetric part has no negative eigenvalue.
+void make_semidefinite(ElementTangent& C);
+
 /// The linearised forces at one state.
 struct TissueTangent {
   std::vector<ElementTangent> local;  ///< of each element; with shared volume change, at constant mean

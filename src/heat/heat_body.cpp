@@ -12,9 +12,11 @@ namespace {
 
 constexpr std::array<std::array<int, 2>, 6> kEdges{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
 
+constexpr double kLeastVolume = 0.05;  // of the volume at rest, below which a tet conducts as at rest
+
 /// Gradients of the four linear functions times 6 V, and 6 V.
-std::pair<std::array<Vec3d, 4>, double> gradients(const TetMesh& mesh, const Tet& t) {
-  const Vec3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]], &d = mesh.vertices[t[3]];
+std::pair<std::array<Vec3d, 4>, double> gradients(std::span<const Vec3d> x, const Tet& t) {
+  const Vec3d &a = x[t[0]], &b = x[t[1]], &c = x[t[2]], &d = x[t[3]];
   std::array<Vec3d, 4> g;
   g[1] = cross(c - a, d - a), g[2] = cross(d - a, b - a), g[3] = cross(b - a, c - a);
   g[0] = (g[1] + g[2] + g[3]) * -1.0;
@@ -23,7 +25,7 @@ std::pair<std::array<Vec3d, 4>, double> gradients(const TetMesh& mesh, const Tet
 
 }  // namespace
 
-HeatBody::HeatBody(const TetMesh& mesh, const std::map<int, ThermalTissue>& tissues) {
+HeatBody::HeatBody(const TetMesh& mesh, const std::map<int, ThermalTissue>& tissues, std::span<const Vec3d> positions) {
   std::map<int, std::uint32_t> numbers;
   for (const auto& [region, tissue] : tissues) {
     numbers[region] = static_cast<std::uint32_t>(curves_.size());
@@ -41,7 +43,7 @@ HeatBody::HeatBody(const TetMesh& mesh, const std::map<int, ThermalTissue>& tiss
     tissue_of[k] = number->second;
   }
   find_parts(mesh, tissue_of);
-  find_links(mesh, tissue_of);
+  find_links(mesh, tissue_of, positions);
 }
 
 void HeatBody::find_parts(const TetMesh& mesh, const std::vector<std::uint32_t>& tissue_of) {
@@ -49,7 +51,7 @@ void HeatBody::find_parts(const TetMesh& mesh, const std::vector<std::uint32_t>&
   std::vector<std::vector<Part>> parts(n);
   volume_.assign(n, 0.0);
   for (std::size_t k = 0; k < mesh.tets.size(); ++k) {
-    const double share = gradients(mesh, mesh.tets[k]).second / 24.0;
+    const double share = gradients(mesh.vertices, mesh.tets[k]).second / 24.0;
     for (const std::uint32_t v : mesh.tets[k]) {
       auto at = std::find_if(parts[v].begin(), parts[v].end(), [&](const Part& p) { return p.tissue == tissue_of[k]; });
       if (at == parts[v].end()) at = parts[v].insert(at, {tissue_of[k], 0.0});
@@ -72,12 +74,17 @@ std::uint32_t HeatBody::part_of(std::uint32_t vertex, std::uint32_t tissue) cons
   return static_cast<std::uint32_t>(p);
 }
 
-void HeatBody::find_links(const TetMesh& mesh, const std::vector<std::uint32_t>& tissue_of) {
+void HeatBody::find_links(const TetMesh& mesh, const std::vector<std::uint32_t>& tissue_of,
+                          std::span<const Vec3d> positions) {
   // pairs of parts by the lower one, with the sum of their tets' w
   std::vector<std::vector<std::pair<std::uint32_t, double>>> pairs(parts_.size());
   for (std::size_t k = 0; k < mesh.tets.size(); ++k) {
     const Tet& t = mesh.tets[k];
-    const auto [g, six_volume] = gradients(mesh, t);
+    auto [g, six_volume] = gradients(mesh.vertices, t);
+    if (!positions.empty()) {
+      const auto [moved, six_moved] = gradients(positions, t);
+      if (six_moved > kLeastVolume * six_volume) g = moved, six_volume = six_moved;
+    }
     std::array<std::uint32_t, 4> part;
     for (std::size_t c = 0; c < 4; ++c) part[c] = part_of(t[c], tissue_of[k]);
     for (const auto& [i, j] : kEdges) {

@@ -1,4 +1,4 @@
-// heat_body.h — what a mesh at rest is to heat: the volumes of its vertices and the conductances between them, by tissue.
+// heat_body.h — what a mesh is to heat: the volumes of its vertices at rest and the conductances between them, by tissue.
 #pragma once
 
 #include <cstdint>
@@ -41,8 +41,9 @@ struct VertexState {
 
 class HeatBody {
  public:
+  /// @param positions  where vertices are, between which heat is conducted [m]; empty: at rest
   /// @throws std::invalid_argument where a region has no tissue
-  HeatBody(const TetMesh& mesh, const std::map<int, ThermalTissue>& tissues);
+  HeatBody(const TetMesh& mesh, const std::map<int, ThermalTissue>& tissues, std::span<const Vec3d> positions = {});
 
   std::size_t size() const { return begin_.size() - 1; }
   std::span<const Part> parts(std::size_t vertex) const {
@@ -65,7 +66,7 @@ class HeatBody {
 
  private:
   void find_parts(const TetMesh& mesh, const std::vector<std::uint32_t>& tissue_of);
-  void find_links(const TetMesh& mesh, const std::vector<std::uint32_t>& tissue_of);
+  void find_links(const TetMesh& mesh, const std::vector<std::uint32_t>& tissue_of, std::span<const Vec3d> positions);
   std::uint32_t part_of(std::uint32_t vertex, std::uint32_t tissue) const;
 
   std::vector<ThermalCurve> curves_;

@@ -70,11 +70,11 @@ double value_of(const TimeFunction<double>& f, double time, const char* what) {
 }  // namespace
 
 HeatSimulation::Impl::Impl(TetMesh given, const std::map<int, ThermalTissue>& tissues, const HeatOptions& options)
-    : mesh_(checked(std::move(given))), options_(checked(options)), body_(mesh_, checked(tissues)),
-      stepper_(body_, options_.threads > 0 ? options_.threads : detail::threads_for(body_.size())),
-      history_(body_, options_.isotherms), held_(mesh_.vertices.size(), 0) {
+    : mesh_(checked(std::move(given))), tissues_(checked(tissues)), options_(checked(options)), body_(mesh_, tissues_),
+      held_(mesh_.vertices.size(), 0) {
+  rebuild();
   now_.temperature.assign(held_.size(), options.temperature);
-  now_.history = history_.begin(now_.temperature);
+  now_.history = history_->begin(now_.temperature);
   for (std::size_t i = 0; i < held_.size(); ++i) now_.heat.push_back(body_.state(i, options.temperature).heat);
 }
 
@@ -92,7 +92,8 @@ SurfaceHeat HeatSimulation::Impl::surface_of(const std::string& set) const {
   std::map<std::uint32_t, double> area;
   for (const Triangle& t : boundary_triangles(mesh_)) {
     if (in[t[0]] + in[t[1]] + in[t[2]] < 3) continue;
-    const Vec3d &a = mesh_.vertices[t[0]], &b = mesh_.vertices[t[1]], &c = mesh_.vertices[t[2]];
+    const std::span<const Vec3d> x = positions_.empty() ? mesh_.vertices : positions_;
+    const Vec3d &a = x[t[0]], &b = x[t[1]], &c = x[t[2]];
     for (const std::uint32_t v : t) area[v] += norm(cross(b - a, c - a)) / 6.0;
   }
   if (area.empty()) {
@@ -116,11 +117,11 @@ void HeatSimulation::Impl::add_line(const LineSource& source) {
         "; c (T_s − T) needs both");
   }
   const std::map<std::uint32_t, double> share = shares_of_line(source);
-  if (source.power_per_length) sources_.push_back({{share.begin(), share.end()}, source.power_per_length});
+  if (source.power_per_length) sources_.push_back({source, 0, {share.begin(), share.end()}, source.power_per_length});
   if (!source.temperature) return;
   SurfaceHeat line{.what = SurfaceHeat::What::line, .vertices = {}, .area = {}};
   for (const auto& [v, length] : share) line.vertices.push_back(v), line.area.push_back(length);
-  surfaces_.push_back({std::move(line), source.temperature, source.coefficient});
+  surfaces_.push_back({"", source, std::move(line), source.temperature, source.coefficient});
 }
 
 namespace {
@@ -141,7 +142,7 @@ std::vector<Vec3d> around(const Vec3d& along, double radius, double spacing) {
 }  // namespace
 
 /// Of each vertex the length of a line that it stands for [m].
-std::map<std::uint32_t, double> HeatSimulation::Impl::shares_of_line(const LineSource& source) const {
+std::map<std::uint32_t, double> HeatSimulation::Impl::shares_of_line(const LineSource& source, bool whole) const {
   const detail::TetLocator locator(mesh_, {});
   const Vec3d way = source.to - source.from;
   const double length = norm(way);
@@ -157,6 +158,7 @@ std::map<std::uint32_t, double> HeatSimulation::Impl::shares_of_line(const LineS
     for (const Vec3d& offset : offsets) {
       const Vec3d x = source.from + way * ((k + 0.5) / n) + offset;
       const auto at = locator.locate(x);
+      if (!at && !whole) continue;
       if (!at) {
         throw std::invalid_argument("heat: a line source leaves the body at (" + detail::number_text(1e3 * x.x) + ", " +
                                     detail::number_text(1e3 * x.y) + ", " + detail::number_text(1e3 * x.z) + ") mm");
@@ -209,10 +211,10 @@ std::optional<HeatSimulation::Impl::Trial> HeatSimulation::Impl::make(double h) 
       if (held_[i] == 0) trial.temperature[i] += h * now_.rate[i];
     }
   }
-  trial.iterations = stepper_.step(in, trial.temperature, trial.flows);
+  trial.iterations = stepper_->step(in, trial.temperature, trial.flows);
   if (trial.iterations < 0 && !now_.rate.empty()) {
     trial.temperature = here;
-    trial.iterations = stepper_.step(in, trial.temperature, trial.flows);
+    trial.iterations = stepper_->step(in, trial.temperature, trial.flows);
   }
   if (trial.iterations < 0) return std::nullopt;
   if (now_.rate.empty()) return trial;
@@ -250,7 +252,7 @@ void HeatSimulation::Impl::accept(double h, Trial& trial) {
         now_.ledger.sources += h * (trial.sources[i] + trial.flows.lines[i]);
     now_.rate[i] = (now - now_.temperature[i]) / h, now_.temperature[i] = now;
   }
-  history_.add(h, earlier, now_.temperature, stepper_.blocks(), now_.history);
+  history_->add(h, earlier, now_.temperature, stepper_->blocks(), now_.history);
   now_.limited_share = trial.flows.limited;
   now_.time += h, now_.step_before = h, ++now_.steps;
 }
@@ -308,7 +310,7 @@ void HeatSimulation::hold(std::span<const std::uint32_t> vertices, TimeFunction<
   impl_->hold(vertices, std::move(temperature));
 }
 void HeatSimulation::add_flux(const std::string& set, TimeFunction<double> flux) {
-  impl_->surfaces_.push_back({impl_->surface_of(set), std::move(flux)});
+  impl_->surfaces_.push_back({set, {}, impl_->surface_of(set), std::move(flux)});
 }
 void HeatSimulation::add_convection(const std::string& set, double coefficient, TimeFunction<double> ambient) {
   if (!(coefficient > 0.0) || !std::isfinite(coefficient)) {
@@ -317,16 +319,12 @@ void HeatSimulation::add_convection(const std::string& set, double coefficient, 
   }
   SurfaceHeat surface = impl_->surface_of(set);
   surface.what = SurfaceHeat::What::convection, surface.coefficient = coefficient;
-  impl_->surfaces_.push_back({std::move(surface), std::move(ambient)});
+  impl_->surfaces_.push_back({set, {}, std::move(surface), std::move(ambient)});
 }
 void HeatSimulation::add_source(int region, TimeFunction<double> power_per_volume) {
-  std::map<std::uint32_t, double> share;
-  for (std::size_t t = 0; t < impl_->mesh_.tets.size(); ++t) {
-    if (impl_->mesh_.region_of(t) != region) continue;
-    for (const std::uint32_t v : impl_->mesh_.tets[t]) share[v] += six_rest_volume(impl_->mesh_, t) / 24.0;
-  }
+  const std::map<std::uint32_t, double> share = impl_->shares_of_region(region);
   if (share.empty()) throw std::invalid_argument("heat: the mesh has no region " + std::to_string(region));
-  impl_->sources_.push_back({{share.begin(), share.end()}, std::move(power_per_volume)});
+  impl_->sources_.push_back({{}, region, {share.begin(), share.end()}, std::move(power_per_volume)});
 }
 void HeatSimulation::add_line_source(const LineSource& source) { impl_->add_line(source); }
 
@@ -356,7 +354,7 @@ std::span<const double> HeatSimulation::temperature() const { return impl_->now_
 HeatLedger HeatSimulation::ledger() const { return impl_->now_.ledger; }
 const HeatState& HeatSimulation::state() const { return impl_->now_; }
 std::size_t HeatSimulation::steps() const { return impl_->now_.steps; }
-const HeatWork& HeatSimulation::work() const { return impl_->stepper_.work(); }
-void HeatSimulation::count_time() { impl_->stepper_.count_time(); }
+const HeatWork& HeatSimulation::work() const { return impl_->stepper_->work(); }
+void HeatSimulation::count_time() { impl_->stepper_->count_time(); }
 
 }  // namespace glisson

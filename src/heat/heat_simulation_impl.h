@@ -22,21 +22,27 @@ class HeatSimulation::Impl {
     TimeFunction<double> temperature;
   };
   struct TimedSurface {
+    std::string set;                   // of a part of the surface
+    std::optional<LineSource> line{};  // in place of it
     heat::SurfaceHeat heat;
     TimeFunction<double> value;
     TimeFunction<double> coefficient{};  // none: that of `heat`
   };
   /// Power by vertex where a function of time is 1.
   struct Source {
+    std::optional<LineSource> line{};
+    int region = 0;  // where it is no line
     std::vector<std::pair<std::uint32_t, double>> shares;
     TimeFunction<double> power;
   };
 
   TetMesh mesh_;
+  std::map<int, ThermalTissue> tissues_;
   HeatOptions options_;
+  std::vector<Vec3d> positions_;  // where vertices are [m]; empty: at rest
   heat::HeatBody body_;
-  heat::HeatStepper stepper_;
-  heat::HistoryKeeper history_;
+  std::optional<heat::HeatStepper> stepper_;
+  std::optional<heat::HistoryKeeper> history_;
   std::vector<Held> holds_;
   std::vector<TimedSurface> surfaces_;
   std::vector<Source> sources_;
@@ -46,8 +52,12 @@ class HeatSimulation::Impl {
 
   void hold(std::span<const std::uint32_t> vertices, TimeFunction<double> temperature);
   heat::SurfaceHeat surface_of(const std::string& set) const;
+  std::map<std::uint32_t, double> shares_of_region(int region) const;
   void add_line(const LineSource& source);
-  std::map<std::uint32_t, double> shares_of_line(const LineSource& source) const;
+  /// @param whole  whether it has to lie in the body as a whole
+  std::map<std::uint32_t, double> shares_of_line(const LineSource& source, bool whole = true) const;
+  void set_positions(std::span<const Vec3d> positions);
+  void change_mesh(TetMesh mesh, std::span<const std::uint32_t> origins);
   HeatStep step_up_to(double most);
 
  private:
@@ -63,6 +73,9 @@ class HeatSimulation::Impl {
   bool make_given(double h, int halvings, int& iterations);
   void accept(double h, Trial& trial);
   double next_corner() const;
+  void rebuild();
+  void place_surfaces();
+  void place_sources();
 };
 
 }  // namespace glisson

@@ -38,7 +38,7 @@ bool is_of(const HeatHistory& x, std::size_t n, std::size_t isotherms) {
   return right;
 }
 
-constexpr std::string_view kMagic = "GLISSONH1";
+constexpr std::string_view kMagic = "GLISSONH2";
 
 }  // namespace
 
@@ -86,7 +86,7 @@ void HeatSimulation::load(std::istream& in) {
 
 void HeatState::archive(Archive& ar) {
   ar(time, steps, temperature, heat, rate, step_before, wanted, limited_share, history);
-  ar(ledger.stored, ledger.held, ledger.surface, ledger.blood, ledger.metabolism, ledger.sources);
+  ar(ledger.stored, ledger.held, ledger.surface, ledger.blood, ledger.metabolism, ledger.sources, ledger.removed);
 }
 
 double HeatSimulation::frozen_volume(std::optional<int> region) const {

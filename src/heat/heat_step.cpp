@@ -49,6 +49,11 @@ HeatStepper::HeatStepper(const HeatBody& body, int threads)
   }
 }
 
+void HeatStepper::set_work(const HeatWork& work, bool counts_time) {
+  work_ = work;
+  solver_.products = work.products, solver_.seconds = work.product_seconds, solver_.counts_time = counts_time;
+}
+
 HeatStepper::Distance HeatStepper::find_residual(const Input& in, Flows& flows) {
   const std::vector<VertexState>& states = finder_.states();
   const auto [beside, alone] = blocks_.largest<2>([&](std::size_t begin, std::size_t end) {

@@ -35,6 +35,9 @@ class HeatStepper {
 
   Blocks& blocks() { return blocks_; }
   const HeatWork& work() const { return work_; }
+  /// Goes on counting from what another one has cost.
+  void set_work(const HeatWork& work, bool counts_time);
+  bool counts_time() const { return solver_.counts_time; }
   void count_time() { solver_.counts_time = true; }
 
  private:

@@ -79,8 +79,10 @@ struct HeatLedger {
   double blood = 0.0;    ///< perfusion
   double metabolism = 0.0;
   double sources = 0.0;
+  double removed =
+      0.0;  ///< with tets that were removed, 0 where they would just begin to freeze: below 0 where they were warmer
 
-  double imbalance() const { return stored - held - surface - blood - metabolism - sources; }
+  double imbalance() const { return stored - held - surface - blood - metabolism - sources - removed; }
 };
 
 enum class HeatStatus { ok, not_converged };
@@ -138,6 +140,18 @@ class HeatSimulation {
   void add_source(int region, TimeFunction<double> power_per_volume);
   /// @throws std::invalid_argument where a part of it lies outside the body, or it gives no heat
   void add_line_source(const LineSource& source);
+
+  /// Conducts from now on in the shape that a body has, as its mechanics move it; what the material contains, gets from blood and
+  /// sources goes by its shape at rest. A tet that is nearly flat or inverted conducts as it did at rest.
+  /// @param positions  one a vertex of mesh() [m] @throws std::invalid_argument for another number
+  /// Cost: some 1 µs a tet.
+  void set_positions(std::span<const Vec3d> positions);
+  /// Goes on with a body that was cut or that tets were removed from: the same vertices at first, then copies. A copy has the
+  /// temperature and history of its origin. Faces of a cut are insulated; the heat of tets that are gone is booked as removed. Sources
+  /// give what they gave to the places that are left.
+  /// @param mesh  present tets (Simulation::present_mesh) @param origins  the last vertices are copies of these
+  /// @throws std::invalid_argument where the numbers do not fit; nothing is changed then
+  void change_mesh(TetMesh mesh, std::span<const std::uint32_t> origins);
 
   /// One step, of the length that the options give; the state is as before it where it did not converge.
   HeatStep step();

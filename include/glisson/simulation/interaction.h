@@ -74,6 +74,12 @@ struct TriangleStiffness {
   std::array<std::array<Mat3d, 3>, 3> blocks{};  ///< K, symmetric as a whole [N/m]
 };
 
+/// Stiffness of a tet: ∂P/∂F of what an interaction adds to its stress P, force per area at rest.
+struct TetStiffness {
+  std::uint32_t tet = 0;
+  std::array<double, 81> slope{};  ///< row 9 (3 i + j) + 3 k + l: of P_ij by F_kl [Pa]
+};
+
 /// The velocities that impulses give to all active vertices within a long step: one of `implicit` or `quasi_static`.
 class StepCompliance {
  public:
@@ -200,8 +206,13 @@ class Interaction {
   /// In long steps, in place of add_forces: adds its forces as a function of the displacements of all vertices to those of the
   /// tissue [N]. Called at every trial of Newton's method.
   virtual void add_forces_at(std::span<const Vec3d> /*displacement*/, std::span<Vec3d> /*force*/) {}
+  /// The same for its forces that resist velocities [m/s], to the viscous ones of the tissue [N]; called right after add_forces_at().
+  virtual void add_viscous_forces_at(std::span<const Vec3d> /*displacement*/, std::span<const Vec3d> /*velocity*/,
+                                     std::span<Vec3d> /*force*/) {}
   /// Adds the stiffness of these forces at the displacements of the last add_forces_at().
   virtual void add_stiffness(std::vector<TriangleStiffness>&) const {}
+  /// The same of forces that are stresses of tets. @param rate  dv/du: velocities follow displacements by it [1/s]
+  virtual void add_tet_stiffness(std::vector<TetStiffness>&, double /*rate*/) const {}
   /// Whether it declares rows in long steps; otherwise it acts by add_forces_at() alone.
   virtual bool constrains_long_steps() const { return true; }
   /// In a long step, before moved(), with displacements and velocities at its end: whether an event such as a tear or a puncture
@@ -233,6 +244,8 @@ class Interaction {
   virtual double energy() const { return 0.0; }
   /// Energy that its elastic forces have lost without work so far, as by a tear: Energies::fracture [J].
   virtual double released_energy() const { return 0.0; }
+  /// Energy that changes of its own law have added to what its elastic forces store, without work: Energies::changed [J].
+  virtual double changed_energy() const { return 0.0; }
   /// Stored in the tool itself at force_time(), as in a bent needle: Energies::instruments [J]. Kept where energies are tracked.
   virtual double tool_energy() const { return 0.0; }
 

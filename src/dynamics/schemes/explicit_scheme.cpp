@@ -102,7 +102,7 @@ void ExplicitScheme::take_state(std::span<const Vec3d> displacement, std::span<c
   for (std::size_t i = 0; i < velocity.size(); ++i)
     kinetic += 0.5 * state_.body.masses[i] * dot(velocity[i], velocity[i]);
   double elastic = secant_energy(state_.body, displacement);
-  for (const auto& x : interactions_.all()) elastic += x->energy() + x->released_energy();
+  for (const auto& x : interactions_.all()) elastic += x->energy() + x->released_energy() - x->changed_energy();
   ledger_.reset(kinetic, elastic);
 }
 
@@ -159,6 +159,11 @@ void ExplicitScheme::tell_change(const BodyView& body, std::span<const std::uint
   interactions_.find_places(moving_->active(), state_.body.vertex_count);
   interactions_.body_changed(body, origins);
   pace_->set_added(added());
+}
+
+void ExplicitScheme::interactions_changed() {
+  pace_->set_added(added());
+  if (!pace_->bears()) throw std::invalid_argument("with it, " + pace_->too_large());
 }
 
 void ExplicitScheme::book(double h, const Advance& seen) {

@@ -55,6 +55,7 @@ class ExplicitScheme : public Scheme {
   void attach(std::shared_ptr<Interaction> interaction, const BodyView& body) override;
   std::span<const std::shared_ptr<Interaction>> interactions() const override { return interactions_.all(); }
   void tell_change(const BodyView& body, std::span<const std::uint32_t> origins) override;
+  void interactions_changed() override;
   Vec3d displacement_of(std::uint32_t vertex) const override { return moving_->displacement_of(vertex); }
   Vec3d velocity_of(std::uint32_t vertex) const override { return moving_->velocity_of(vertex); }
   void archive_motion(Archive& ar) override;

@@ -120,6 +120,7 @@ void ImplicitScheme::start_fresh() {
   tissue_.forces({now_.u, now_.v, relaxes_ ? std::numeric_limits<double>::infinity() : 0.0}, now_.elastic, now_.viscous,
                  watch());
   solver_.contact().add_forces_at(now_.u, now_.elastic);
+  solver_.contact().add_viscous_forces_at(now_.u, now_.v, now_.viscous);
   const std::span<const Vec3d> loads = state_.loads_at(state_.time, now_.u);
   now_.external.assign(loads.begin(), loads.end());
   now_.gravity = state_.gravity_at(state_.time);

@@ -50,6 +50,7 @@ class ImplicitScheme : public Scheme {
     return solver_.contact().interactions().all();
   }
   void tell_change(const BodyView& body, std::span<const std::uint32_t> origins) override;
+  void interactions_changed() override { fresh_ = true; }
   void archive_motion(Archive& ar) override;
   std::shared_ptr<const void> save_factor() const override { return fresh_ ? nullptr : solver_.save_factor(); }
   void load_factor(const std::shared_ptr<const void>& factor) override { solver_.load_factor(factor); }

@@ -64,6 +64,8 @@ class Scheme {
   virtual std::span<const std::shared_ptr<Interaction>> interactions() const { return {}; }
   /// Hands a change of the mesh on to the interactions, after everything else has followed it.
   virtual void tell_change(const BodyView&, std::span<const std::uint32_t> /*origins*/) {}
+  /// An interaction has changed its law between two steps. @throws std::invalid_argument where a given step does not bear its stiffness
+  virtual void interactions_changed() {}
 
   /// As Simulation::step.
   virtual StepResult step() = 0;

@@ -20,12 +20,15 @@ constexpr double kDifference = 1e-3;  ///< of h, for the velocity of a motion
 
 std::span<const Vec3d> view(const std::vector<Vec3d>& field) { return field; }
 
-/// Norm of the forces that a strain of 1 would give.
-double unit_force(const Body& body) {
+/// Norm of the forces that a strain of 1 would give. @param tets  what interactions add to the stiffness of tets
+double unit_force(const Body& body, std::span<const TetStiffness> tets) {
+  std::vector<double> added(tets.empty() ? 0 : body.elements.size(), 0.0);  // per tet of the mesh
+  for (const TetStiffness& t : tets) added[t.tet] += t.slope[0];
   double sum = 0.0;
   for (const TissueBlock& block : body.blocks) {
-    const double modulus = block.elastic.lambda + 2.0 * block.elastic.mu;
+    const double own = block.elastic.lambda + 2.0 * block.elastic.mu;
     for (std::size_t e = block.begin; e < block.end; ++e) {
+      const double modulus = added.empty() ? own : own + added[body.mesh_tet[e]];
       for (const Vec3d& s : body.rest[e].s) sum += std::pow(modulus * body.rest[e].volume * norm(s), 2);
     }
   }
@@ -46,7 +49,7 @@ void BalanceSolver::begin() {
   for (auto* field : {&change_, &held_velocity_, &at_u_, &at_v_, &out_of_balance_}) field->resize(vertices);
   diagonal_.assign(vertices, Vec3d{});
   next_ = now_;
-  unit_force_ = unit_force(state_.body);
+  unit_force_ = unit_force(state_.body, contact_.tet_stiffness(0.0));
   hold();
 }
 
@@ -141,6 +144,7 @@ BalanceSolver::Balance BalanceSolver::evaluate(const TimeStep& s) {
   const double ahead = (1.0 - s.alpha_f) * s.h;
   tissue_.forces({at_u_, at_v_, since(s)}, next_.elastic, next_.viscous, watch_);
   contact_.add_forces_at(at_u_, next_.elastic);
+  contact_.add_viscous_forces_at(at_u_, at_v_, next_.viscous);
   if (state_.loads.depends_on_state()) load(s);
   const Vec3d gravity = state_.gravity_at(state_.time + ahead);
   Balance b;
@@ -178,10 +182,10 @@ void BalanceSolver::linearise(const TimeStep& s, bool semidefinite, bool anew) {
     }
   }
   const double time = state_.time + (1.0 - s.alpha_f) * s.h;
-  system_.linearise(
-      {at_u_, at_v_, since(s)},
-      {s.v_rate, 1.0 - s.alpha_f, diagonal_, state_.loads.stiffness(time, state_.body, at_u_), contact_.stiffness()},
-      semidefinite, anew);
+  system_.linearise({at_u_, at_v_, since(s)},
+                    {s.v_rate, 1.0 - s.alpha_f, diagonal_, state_.loads.stiffness(time, state_.body, at_u_),
+                     contact_.stiffness(), contact_.tet_stiffness(s.v_rate)},
+                    semidefinite, anew);
 }
 
 /// A first u⁺: the motion goes on as it was. Where that turns tets inside out, from where the body is, with the change

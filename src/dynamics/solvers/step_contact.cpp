@@ -135,12 +135,17 @@ void StepContact::add_forces_at(std::span<const Vec3d> u, std::span<Vec3d> force
   for (const std::shared_ptr<Interaction>& x : interactions_.all()) x->add_forces_at(u, forces);
 }
 
+void StepContact::add_viscous_forces_at(std::span<const Vec3d> u, std::span<const Vec3d> v,
+                                        std::span<Vec3d> forces) const {
+  for (const std::shared_ptr<Interaction>& x : interactions_.all()) x->add_viscous_forces_at(u, v, forces);
+}
+
 double StepContact::energy_at(std::span<const Vec3d> u) const {
   std::vector<Vec3d> unused(state_.body.vertex_count);
   double sum = 0.0;
   for (const std::shared_ptr<Interaction>& x : interactions_.all()) {
     x->add_forces_at(u, unused);
-    sum += x->energy() + x->released_energy();
+    sum += x->energy() + x->released_energy() - x->changed_energy();
   }
   return sum;
 }
@@ -149,6 +154,12 @@ std::span<const TriangleStiffness> StepContact::stiffness() {
   stiffness_.clear();
   for (const std::shared_ptr<Interaction>& x : interactions_.all()) x->add_stiffness(stiffness_);
   return stiffness_;
+}
+
+std::span<const TetStiffness> StepContact::tet_stiffness(double rate) {
+  tet_stiffness_.clear();
+  for (const std::shared_ptr<Interaction>& x : interactions_.all()) x->add_tet_stiffness(tet_stiffness_, rate);
+  return tet_stiffness_;
 }
 
 /// What is known of the present factor.

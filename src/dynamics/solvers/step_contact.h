@@ -70,10 +70,14 @@ class StepContact final : public StepCompliance {
   void give_up() { restore(before_); }
   /// Adds what follows from the displacements alone to the forces of the tissue [N].
   void add_forces_at(std::span<const Vec3d> u, std::span<Vec3d> forces) const;
-  /// What they store there and have released [J].
+  /// The same of what resists velocities, to the viscous forces of the tissue [N].
+  void add_viscous_forces_at(std::span<const Vec3d> u, std::span<const Vec3d> v, std::span<Vec3d> forces) const;
+  /// What they store there and have released, without what changes of their own have added [J].
   double energy_at(std::span<const Vec3d> u) const;
   /// The stiffness of that where it was asked last.
   std::span<const TriangleStiffness> stiffness();
+  /// The same of what is a stress of tets. @param rate  dv/du [1/s]
+  std::span<const TetStiffness> tet_stiffness(double rate);
   /// Corrects u⁺ of a Newton iteration that was made with forces(), and finds these anew.
   /// @return false where there is no factor, or where the forces were not found within the work allowed: give_up() comes next then
   bool correct(std::span<Vec3d> u);
@@ -149,6 +153,7 @@ class StepContact final : public StepCompliance {
   ExertedForces forces_;
   std::vector<Vec3d> start_;  ///< u(t) [m]
   std::vector<TriangleStiffness> stiffness_;
+  std::vector<TetStiffness> tet_stiffness_;
   Backup before_, reached_;  ///< before reach(), and after it
   double h_ = 0.0, factor_h_ = 0.0;
   bool agrees_ = true;

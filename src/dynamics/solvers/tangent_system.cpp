@@ -82,7 +82,8 @@ void TangentSystem::set_free(std::vector<char> free) {
 
 void TangentSystem::linearise(const TissueState& state, const Terms& terms, bool semidefinite, bool anew) {
   const bool same = (linear_ || !anew) && terms.rate == terms_.rate && state.since == state_.since;
-  current_ = current_ && same && terms.weight == terms_.weight && terms.triangles.empty() && triangles_.empty() &&
+  const bool stiffened = !terms.triangles.empty() || !triangles_.empty() || !terms.tets.empty() || !tets_.empty();
+  current_ = current_ && same && terms.weight == terms_.weight && !stiffened &&
              std::equal(diagonal_.begin(), diagonal_.end(), terms.diagonal.begin(), terms.diagonal.end());
   diagonal_.assign(terms.diagonal.begin(), terms.diagonal.end());
   terms_ = terms;
@@ -91,11 +92,30 @@ void TangentSystem::linearise(const TissueState& state, const Terms& terms, bool
   terms_.loads = loads_;
   triangles_.assign(terms.triangles.begin(), terms.triangles.end());
   terms_.triangles = triangles_;
+  known_ = known_ && tets_.empty() && terms.tets.empty();
+  tets_.assign(terms.tets.begin(), terms.tets.end());
+  terms_.tets = tets_;
   state_ = state;
   if (same && known_) return;
   tissue_.linearise(state, terms.rate, semidefinite, tangent_);
+  add_tets(tangent_, semidefinite);
   symmetric_ = is_symmetric(tangent_);
   known_ = true;
+}
+
+/// Adds what interactions do to the stress of tets.
+void TangentSystem::add_tets(TissueTangent& tangent, bool semidefinite) {
+  if (tets_.empty()) return;
+  const std::vector<std::uint32_t>& tet_of = tissue_.body().mesh_tet;
+  if (element_of_.empty()) {
+    element_of_.resize(tet_of.size());
+    for (std::uint32_t e = 0; e < tet_of.size(); ++e) element_of_[tet_of[e]] = e;
+  }
+  for (const TetStiffness& t : tets_) {
+    ElementTangent& C = tangent.local[element_of_[t.tet]];
+    C += Eigen::Map<const ElementTangent>(t.slope.data());
+    if (semidefinite) make_semidefinite(C);
+  }
 }
 
 void TangentSystem::apply(std::span<const Vec3d> x, std::span<Vec3d> y) const {
@@ -284,6 +304,7 @@ void TangentSystem::refresh() {
   if (!has_factor_ && !interrupt_.is_wanted()) {
     TissueTangent definite;
     tissue_.linearise(state_, terms_.rate, true, definite);
+    add_tets(definite, true);
     has_factor_ = factorise(definite);
   }
   if (interrupt_.is_wanted()) {

@@ -1,7 +1,8 @@
 // tangent_system.h — the linear system of a Newton iteration, on the components that are free to move.
 //
-//   A = k (K(u, rate) + T(u) − L(u)) + diag(d)   K of element/tissue_operator.h, applied without being assembled; T of triangles of the
-//                                                surface that interactions stiffen; L of loads that follow
+//   A = k (K(u, rate) + T(u) − L(u)) + diag(d)   K of element/tissue_operator.h and of what interactions add to the stress of tets, applied
+//                                                without being assembled; T of triangles of the surface that interactions stiffen; L of
+//                                                loads that follow
 //
 // Only the preconditioner is assembled: a sparse Cholesky factor of A's symmetric part at some earlier state, kept
 // over iterations and steps until the iterations say that it has become bad; or the 3 × 3 blocks of A's diagonal.
@@ -47,6 +48,7 @@ class TangentSystem final : public StepFactor {
     std::span<const Vec3d> diagonal;                 ///< d of each component [kg/s²]
     std::span<const FaceStiffness> loads{};          ///< L: not in the preconditioner
     std::span<const TriangleStiffness> triangles{};  ///< T
+    std::span<const TetStiffness> tets{};            ///< in K
   };
 
   /// Both must outlive this. @param interrupt  asked within solves, whose answers are then of no use
@@ -68,7 +70,7 @@ class TangentSystem final : public StepFactor {
   std::shared_ptr<const void> save_factor() const;
   void load_factor(const std::shared_ptr<const void>& factor);
   /// Whether A may be kept while its terms do not change: every tissue is linear.
-  bool is_linear() const { return linear_ && triangles_.empty(); }
+  bool is_linear() const { return linear_ && triangles_.empty() && tets_.empty(); }
 
   /// y = A x on all components, held ones included.
   void apply(std::span<const Vec3d> x, std::span<Vec3d> y) const;
@@ -99,6 +101,7 @@ class TangentSystem final : public StepFactor {
     bool knows_entries = false;  ///< the factor has been made for this pattern
     std::shared_ptr<void> solved{};
   };
+  void add_tets(TissueTangent& tangent, bool semidefinite);
   void find_pattern();
   int place_in(int row, int column) const;
   void find_pressures();
@@ -119,6 +122,8 @@ class TangentSystem final : public StepFactor {
   std::vector<Vec3d> diagonal_;
   std::vector<FaceStiffness> loads_;
   std::vector<TriangleStiffness> triangles_;
+  std::vector<TetStiffness> tets_;
+  std::vector<std::uint32_t> element_of_;  ///< of each tet of the mesh, while tets_ has some
   TissueState state_;
   TissueTangent tangent_;
   mutable std::vector<Vec3d> x_, y_;
