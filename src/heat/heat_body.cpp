@@ -42,6 +42,22 @@ HeatBody::HeatBody(const TetMesh& mesh, const std::map<int, ThermalTissue>& tiss
   }
   find_parts(mesh, tissue_of);
   find_links(mesh, tissue_of);
+  find_spreads(mesh);
+}
+
+void HeatBody::find_spreads(const TetMesh& mesh) {
+  const std::size_t n = mesh.vertices.size();
+  std::vector<double> edge(n, 0.0), slope(n, 0.0);  // longest, steepest
+  for (const Tet& t : mesh.tets) {
+    const auto [g, six_volume] = gradients(mesh, t);
+    for (std::size_t c = 0; c < 4; ++c) slope[t[c]] = std::max(slope[t[c]], norm(g[c]) / six_volume);
+    for (const auto& [i, j] : kEdges) {
+      const std::uint32_t a = t[static_cast<std::size_t>(i)], b = t[static_cast<std::size_t>(j)];
+      const double length = norm(mesh.vertices[a] - mesh.vertices[b]);
+      edge[a] = std::max(edge[a], length), edge[b] = std::max(edge[b], length);
+    }
+  }
+  for (std::size_t i = 0; i < n; ++i) spread_.push_back(edge[i] * slope[i]);
 }
 
 void HeatBody::find_parts(const TetMesh& mesh, const std::vector<std::uint32_t>& tissue_of) {

@@ -58,12 +58,16 @@ class HeatBody {
   int region_of(std::uint32_t tissue) const { return regions_[tissue]; }
   std::size_t tissues() const { return curves_.size(); }
   double volume(std::size_t vertex) const { return volume_[vertex]; }
+  /// Longest edge at a vertex over the least height of its tets above the faces across from it: no linear field falls from it by more
+  /// than this times what it rises by, to vertices beside it, where tets surround it [BarrenecheaJohnKnobloch2017].
+  double spread(std::size_t vertex) const { return spread_[vertex]; }
 
   VertexState state(std::size_t vertex, double temperature) const;
   /// The temperature at which a vertex contains a heat; not finite where that is not. @param near  where the search begins [°C]
   double temperature_of(std::size_t vertex, double heat, double near) const;
 
  private:
+  void find_spreads(const TetMesh& mesh);
   void find_parts(const TetMesh& mesh, const std::vector<std::uint32_t>& tissue_of);
   void find_links(const TetMesh& mesh, const std::vector<std::uint32_t>& tissue_of);
   std::uint32_t part_of(std::uint32_t vertex, std::uint32_t tissue) const;
@@ -73,7 +77,7 @@ class HeatBody {
   std::vector<std::size_t> begin_;
   std::vector<Part> parts_;
   std::vector<std::uint32_t> vertex_of_;
-  std::vector<double> volume_;
+  std::vector<double> volume_, spread_;
   Links links_;
   std::vector<NegativeLink> negative_;
 };
