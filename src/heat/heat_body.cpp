@@ -3,27 +3,21 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "heat/tet_links.h"
+
 namespace glisson::heat {
 namespace {
 
-constexpr std::array<std::array<int, 2>, 6> kEdges{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
-
-/// Gradients of the four linear functions times 6 V, and 6 V.
-std::pair<std::array<Vec3d, 4>, double> gradients(const TetMesh& mesh, const Tet& t) {
-  const Vec3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]], &d = mesh.vertices[t[3]];
-  std::array<Vec3d, 4> g;
-  g[1] = cross(c - a, d - a), g[2] = cross(d - a, b - a), g[3] = cross(b - a, c - a);
-  g[0] = (g[1] + g[2] + g[3]) * -1.0;
-  return {g, dot(b - a, g[1])};
-}
+constexpr std::uint32_t kHollow = std::numeric_limits<std::uint32_t>::max();  // in place of a tissue
 
 }  // namespace
 
-HeatBody::HeatBody(const TetMesh& mesh, const std::map<int, ThermalTissue>& tissues) {
+HeatBody::HeatBody(const TetMesh& mesh, const std::map<int, ThermalTissue>& tissues, std::span<const int> hollow) {
   std::map<int, std::uint32_t> numbers;
   for (const auto& [region, tissue] : tissues) {
     numbers[region] = static_cast<std::uint32_t>(curves_.size());
@@ -31,6 +25,10 @@ HeatBody::HeatBody(const TetMesh& mesh, const std::map<int, ThermalTissue>& tiss
   }
   std::vector<std::uint32_t> tissue_of(mesh.tets.size());
   for (std::size_t k = 0; k < mesh.tets.size(); ++k) {
+    if (std::find(hollow.begin(), hollow.end(), mesh.region_of(k)) != hollow.end()) {
+      tissue_of[k] = kHollow;
+      continue;
+    }
     const auto number = numbers.find(mesh.region_of(k));
     if (number == numbers.end()) {
       const auto name = mesh.region_names.find(mesh.region_of(k));
@@ -42,19 +40,20 @@ HeatBody::HeatBody(const TetMesh& mesh, const std::map<int, ThermalTissue>& tiss
   }
   find_parts(mesh, tissue_of);
   find_links(mesh, tissue_of);
-  find_spreads(mesh);
+  find_spreads(mesh, tissue_of);
 }
 
-void HeatBody::find_spreads(const TetMesh& mesh) {
+void HeatBody::find_spreads(const TetMesh& mesh, const std::vector<std::uint32_t>& tissue_of) {
   const std::size_t n = mesh.vertices.size();
   std::vector<double> edge(n, 0.0), slope(n, 0.0);  // longest, steepest
-  for (const Tet& t : mesh.tets) {
-    const auto [g, six_volume] = gradients(mesh, t);
-    for (std::size_t c = 0; c < 4; ++c) slope[t[c]] = std::max(slope[t[c]], norm(g[c]) / six_volume);
+  for (std::size_t k = 0; k < mesh.tets.size(); ++k) {
+    if (tissue_of[k] == kHollow) continue;
+    const Tet& t = mesh.tets[k];
+    const TetLinks x = links_of(mesh, t);
+    for (std::size_t c = 0; c < 4; ++c) slope[t[c]] = std::max(slope[t[c]], norm(x.slopes[c]) / x.six_volume);
     for (const auto& [i, j] : kEdges) {
-      const std::uint32_t a = t[static_cast<std::size_t>(i)], b = t[static_cast<std::size_t>(j)];
-      const double length = norm(mesh.vertices[a] - mesh.vertices[b]);
-      edge[a] = std::max(edge[a], length), edge[b] = std::max(edge[b], length);
+      const double length = norm(mesh.vertices[t[i]] - mesh.vertices[t[j]]);
+      edge[t[i]] = std::max(edge[t[i]], length), edge[t[j]] = std::max(edge[t[j]], length);
     }
   }
   for (std::size_t i = 0; i < n; ++i) spread_.push_back(edge[i] * slope[i]);
@@ -65,7 +64,8 @@ void HeatBody::find_parts(const TetMesh& mesh, const std::vector<std::uint32_t>&
   std::vector<std::vector<Part>> parts(n);
   volume_.assign(n, 0.0);
   for (std::size_t k = 0; k < mesh.tets.size(); ++k) {
-    const double share = gradients(mesh, mesh.tets[k]).second / 24.0;
+    if (tissue_of[k] == kHollow) continue;
+    const double share = six_rest_volume(mesh, k) / 24.0;
     for (const std::uint32_t v : mesh.tets[k]) {
       auto at = std::find_if(parts[v].begin(), parts[v].end(), [&](const Part& p) { return p.tissue == tissue_of[k]; });
       if (at == parts[v].end()) at = parts[v].insert(at, {tissue_of[k], 0.0});
@@ -92,15 +92,16 @@ void HeatBody::find_links(const TetMesh& mesh, const std::vector<std::uint32_t>&
   // pairs of parts by the lower one, with the sum of their tets' w
   std::vector<std::vector<std::pair<std::uint32_t, double>>> pairs(parts_.size());
   for (std::size_t k = 0; k < mesh.tets.size(); ++k) {
+    if (tissue_of[k] == kHollow) continue;
     const Tet& t = mesh.tets[k];
-    const auto [g, six_volume] = gradients(mesh, t);
+    const TetLinks x = links_of(mesh, t);
     std::array<std::uint32_t, 4> part;
     for (std::size_t c = 0; c < 4; ++c) part[c] = part_of(t[c], tissue_of[k]);
-    for (const auto& [i, j] : kEdges) {
-      const double w = -dot(g[static_cast<std::size_t>(i)], g[static_cast<std::size_t>(j)]) / (6.0 * six_volume);
-      const auto [low, high] = std::minmax(part[static_cast<std::size_t>(i)], part[static_cast<std::size_t>(j)]);
-      const auto at =
-          std::find_if(pairs[low].begin(), pairs[low].end(), [to = high](const auto& x) { return x.first == to; });
+    for (std::size_t e = 0; e < 6; ++e) {
+      const double w = x.w[e];
+      const auto [low, high] = std::minmax(part[kEdges[e][0]], part[kEdges[e][1]]);
+      const auto at = std::find_if(pairs[low].begin(), pairs[low].end(),
+                                   [to = high](const auto& pair) { return pair.first == to; });
       if (at == pairs[low].end())
         pairs[low].emplace_back(high, w);
       else

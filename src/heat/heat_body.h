@@ -41,8 +41,8 @@ struct VertexState {
 
 class HeatBody {
  public:
-  /// @throws std::invalid_argument where a region has no tissue
-  HeatBody(const TetMesh& mesh, const std::map<int, ThermalTissue>& tissues);
+  /// @param hollow  regions that are no part of it @throws std::invalid_argument where another region has no tissue
+  HeatBody(const TetMesh& mesh, const std::map<int, ThermalTissue>& tissues, std::span<const int> hollow = {});
 
   std::size_t size() const { return begin_.size() - 1; }
   std::span<const Part> parts(std::size_t vertex) const {
@@ -67,7 +67,7 @@ class HeatBody {
   double temperature_of(std::size_t vertex, double heat, double near) const;
 
  private:
-  void find_spreads(const TetMesh& mesh);
+  void find_spreads(const TetMesh& mesh, const std::vector<std::uint32_t>& tissue_of);
   void find_parts(const TetMesh& mesh, const std::vector<std::uint32_t>& tissue_of);
   void find_links(const TetMesh& mesh, const std::vector<std::uint32_t>& tissue_of);
   std::uint32_t part_of(std::uint32_t vertex, std::uint32_t tissue) const;

@@ -9,6 +9,7 @@
 
 #include "glisson/heat/heat_simulation.h"
 #include "heat/heat_step.h"
+#include "heat/joule_heat.h"
 #include "heat/keep_history.h"
 
 namespace glisson {
@@ -33,6 +34,7 @@ class HeatSimulation::Impl {
   };
 
   TetMesh mesh_;
+  std::map<int, ThermalTissue> tissues_;
   HeatOptions options_;
   heat::HeatBody body_;
   heat::HeatStepper stepper_;
@@ -40,12 +42,17 @@ class HeatSimulation::Impl {
   std::vector<Held> holds_;
   std::vector<TimedSurface> surfaces_;
   std::vector<Source> sources_;
+  std::vector<heat::JouleHeat> radio_;
 
   HeatState now_;
   std::vector<char> held_;
 
   void hold(std::span<const std::uint32_t> vertices, TimeFunction<double> temperature);
   heat::SurfaceHeat surface_of(const std::string& set) const;
+  heat::SurfaceHeat wall_of(int region) const;
+  void add_convection(heat::SurfaceHeat surface, TimeFunction<double> coefficient, TimeFunction<double> ambient);
+  void add_radio(RadioFrequency radio);
+  bool is_hollow(int region) const;
   void add_line(const LineSource& source);
   std::map<std::uint32_t, double> shares_of_line(const LineSource& source) const;
   HeatStep step_up_to(double most);
@@ -59,6 +66,10 @@ class HeatSimulation::Impl {
     double error = 0.0;  // [K]
   };
   std::optional<Trial> make(double h);
+  std::vector<heat::SurfaceHeat> surfaces_at(double time);
+  std::vector<double> sources_at(double time) const;
+  /// The potentials at the temperatures before a step.
+  void find_potentials();
   /// A step of this length, in halves where it does not converge at once.
   bool make_given(double h, int halvings, int& iterations);
   void accept(double h, Trial& trial);
