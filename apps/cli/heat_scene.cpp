@@ -153,11 +153,11 @@ int check_heat_scene(const Scene& scene, const MeshLoader& load) {
           t.death ? fmt::format("; dies below {:.4g} °C after {:.4g} s", t.death->cold, t.death->cold_time) : "");
     }
     const std::size_t sensors = built.temperature_columns().size() - 1;
-    say("  heat     {:.4g} °C at the start{}{}{}{}\n", heat.options.temperature,
+    say("  heat     {:.4g} °C at the start{}{}{}{}{}\n", heat.options.temperature,
         counted(heat.boundaries.size(), "boundary condition"), counted(heat.probes.size(), "probe"),
-        counted(heat.powers.size(), "power"), counted(sensors, "sensor"));
+        counted(heat.powers.size(), "power"), counted(heat.radios.size(), "current"), counted(sensors, "sensor"));
     say("  time     {:.4g} s, a line every {:.4g} s\n", heat.duration, heat.sample_every);
-    if (heat.boundaries.empty() && heat.probes.empty() && heat.powers.empty())
+    if (heat.boundaries.empty() && heat.probes.empty() && heat.powers.empty() && heat.radios.empty())
       say("  note     nothing heats or cools the body but its blood\n");
   }
   say("\n{} variant{}. The scene can be run.\n", scene.variants.size(), scene.variants.size() == 1 ? "" : "s");

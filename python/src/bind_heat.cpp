@@ -212,6 +212,44 @@ void bind_heat_set_up(nb::class_<LiveHeat>& c) {
           "set"_a, "coefficient"_a, "ambient"_a, doc(heat_doc("add_convection")),
           nb::sig(with_courses("def add_convection(self, set: str, coefficient: float, ambient: COURSE) -> None")))
       .def(
+          "add_vessel",
+          [](LiveHeat& live, const Region& region, const nb::object& coefficient, const nb::object& blood) {
+            keeping_functions(live, [&] {
+              live.get().add_vessel(region_number(live.get().mesh(), region),
+                                    course_of("coefficient", coefficient, live), course_of("blood", blood, live));
+            });
+          },
+          "region"_a, "coefficient"_a, "blood"_a, doc(heat_doc("add_vessel")),
+          nb::sig(with_courses("def add_vessel(self, region: int | str, coefficient: COURSE, blood: COURSE) -> None")))
+      .def(
+          "add_pattern",
+          [](LiveHeat& live, const std::vector<double>& power, const nb::object& scale) {
+            keeping_functions(live, [&] { live.get().add_source(power, course_of("scale", scale, live)); });
+          },
+          "power_per_volume"_a, "scale"_a,
+          "Heat per volume of each tet, such as density times SAR of an antenna [W/m³], times `scale` over time [-].",
+          nb::sig(with_courses("def add_pattern(self, power_per_volume: collections.abc.Sequence[float] | "
+                               "numpy.typing.NDArray[typing.Any], scale: COURSE) -> None")))
+      .def(
+          "add_radio",
+          [](LiveHeat& live, const VertexChoice& electrode, const VertexChoice& ground, const nb::object& voltage,
+             const nb::object& power) {
+            const auto vertices = [&live](const VertexChoice& choice, const char* name) {
+              if (nb::isinstance<nb::str>(choice)) return live.get().mesh().vertex_set(nb::cast<std::string>(choice));
+              const auto given = to_indices(choice, 1, name);
+              return std::vector<std::uint32_t>(given.begin(), given.end());
+            };
+            keeping_functions(live, [&] {
+              RadioFrequency radio{vertices(electrode, "electrode"), vertices(ground, "ground"), {}, {}};
+              radio.voltage = course_of("voltage", voltage, live), radio.power = course_of("power", power, live);
+              live.get().add_radio(std::move(radio));
+            });
+          },
+          "electrode"_a, "ground"_a, "voltage"_a = nb::none(), "power"_a = nb::none(), doc(heat_doc("add_radio")),
+          nb::sig(with_courses(
+              "def add_radio(self, electrode: str | numpy.typing.ArrayLike, ground: str | "
+              "numpy.typing.ArrayLike, voltage: COURSE | None = None, power: COURSE | None = None) -> None")))
+      .def(
           "add_source",
           [](LiveHeat& live, const Region& region, const nb::object& power) {
             keeping_functions(live, [&] {

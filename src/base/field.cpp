@@ -8,6 +8,7 @@ namespace {
 /// "kg/m³" as a part of a key: "kg_m3".
 std::string key_of_unit(std::string_view unit) {
   if (unit == "1/s") return "per_s";
+  if (unit == "1/K") return "per_K";
   if (unit == "Hz") return "hz";
   if (unit == "°") return "deg";
   std::string key;

@@ -3,29 +3,23 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "heat/tet_links.h"
+
 namespace glisson::heat {
 namespace {
 
-constexpr std::array<std::array<int, 2>, 6> kEdges{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
-
+constexpr std::uint32_t kHollow = std::numeric_limits<std::uint32_t>::max();  // in place of a tissue
 constexpr double kLeastVolume = 0.05;  // of the volume at rest, below which a tet conducts as at rest
-
-/// Gradients of the four linear functions times 6 V, and 6 V.
-std::pair<std::array<Vec3d, 4>, double> gradients(std::span<const Vec3d> x, const Tet& t) {
-  const Vec3d &a = x[t[0]], &b = x[t[1]], &c = x[t[2]], &d = x[t[3]];
-  std::array<Vec3d, 4> g;
-  g[1] = cross(c - a, d - a), g[2] = cross(d - a, b - a), g[3] = cross(b - a, c - a);
-  g[0] = (g[1] + g[2] + g[3]) * -1.0;
-  return {g, dot(b - a, g[1])};
-}
 
 }  // namespace
 
-HeatBody::HeatBody(const TetMesh& mesh, const std::map<int, ThermalTissue>& tissues, std::span<const Vec3d> positions) {
+HeatBody::HeatBody(const TetMesh& mesh, const std::map<int, ThermalTissue>& tissues, std::span<const int> hollow,
+                   std::span<const Vec3d> positions) {
   std::map<int, std::uint32_t> numbers;
   for (const auto& [region, tissue] : tissues) {
     numbers[region] = static_cast<std::uint32_t>(curves_.size());
@@ -33,6 +27,10 @@ HeatBody::HeatBody(const TetMesh& mesh, const std::map<int, ThermalTissue>& tiss
   }
   std::vector<std::uint32_t> tissue_of(mesh.tets.size());
   for (std::size_t k = 0; k < mesh.tets.size(); ++k) {
+    if (std::find(hollow.begin(), hollow.end(), mesh.region_of(k)) != hollow.end()) {
+      tissue_of[k] = kHollow;
+      continue;
+    }
     const auto number = numbers.find(mesh.region_of(k));
     if (number == numbers.end()) {
       const auto name = mesh.region_names.find(mesh.region_of(k));
@@ -44,6 +42,33 @@ HeatBody::HeatBody(const TetMesh& mesh, const std::map<int, ThermalTissue>& tiss
   }
   find_parts(mesh, tissue_of);
   find_links(mesh, tissue_of, positions);
+  find_spreads(mesh, tissue_of, positions);
+}
+
+/// Of a tet where the body is now.
+TetLinks HeatBody::present_links(const TetMesh& mesh, const Tet& t, std::span<const Vec3d> positions) {
+  const TetLinks rest = links_of(mesh.vertices, t);
+  if (positions.empty()) return rest;
+  const TetLinks moved = links_of(positions, t);
+  return moved.six_volume > kLeastVolume * rest.six_volume ? moved : rest;
+}
+
+void HeatBody::find_spreads(const TetMesh& mesh, const std::vector<std::uint32_t>& tissue_of,
+                            std::span<const Vec3d> positions) {
+  const std::size_t n = mesh.vertices.size();
+  const std::span<const Vec3d> at = positions.empty() ? std::span<const Vec3d>(mesh.vertices) : positions;
+  std::vector<double> edge(n, 0.0), slope(n, 0.0);  // longest, steepest
+  for (std::size_t k = 0; k < mesh.tets.size(); ++k) {
+    if (tissue_of[k] == kHollow) continue;
+    const Tet& t = mesh.tets[k];
+    const TetLinks x = present_links(mesh, t, positions);
+    for (std::size_t c = 0; c < 4; ++c) slope[t[c]] = std::max(slope[t[c]], norm(x.slopes[c]) / x.six_volume);
+    for (const auto& [i, j] : kEdges) {
+      const double length = norm(at[t[i]] - at[t[j]]);
+      edge[t[i]] = std::max(edge[t[i]], length), edge[t[j]] = std::max(edge[t[j]], length);
+    }
+  }
+  for (std::size_t i = 0; i < n; ++i) spread_.push_back(edge[i] * slope[i]);
 }
 
 void HeatBody::find_parts(const TetMesh& mesh, const std::vector<std::uint32_t>& tissue_of) {
@@ -51,7 +76,8 @@ void HeatBody::find_parts(const TetMesh& mesh, const std::vector<std::uint32_t>&
   std::vector<std::vector<Part>> parts(n);
   volume_.assign(n, 0.0);
   for (std::size_t k = 0; k < mesh.tets.size(); ++k) {
-    const double share = gradients(mesh.vertices, mesh.tets[k]).second / 24.0;
+    if (tissue_of[k] == kHollow) continue;
+    const double share = six_rest_volume(mesh, k) / 24.0;
     for (const std::uint32_t v : mesh.tets[k]) {
       auto at = std::find_if(parts[v].begin(), parts[v].end(), [&](const Part& p) { return p.tissue == tissue_of[k]; });
       if (at == parts[v].end()) at = parts[v].insert(at, {tissue_of[k], 0.0});
@@ -79,19 +105,16 @@ void HeatBody::find_links(const TetMesh& mesh, const std::vector<std::uint32_t>&
   // pairs of parts by the lower one, with the sum of their tets' w
   std::vector<std::vector<std::pair<std::uint32_t, double>>> pairs(parts_.size());
   for (std::size_t k = 0; k < mesh.tets.size(); ++k) {
+    if (tissue_of[k] == kHollow) continue;
     const Tet& t = mesh.tets[k];
-    auto [g, six_volume] = gradients(mesh.vertices, t);
-    if (!positions.empty()) {
-      const auto [moved, six_moved] = gradients(positions, t);
-      if (six_moved > kLeastVolume * six_volume) g = moved, six_volume = six_moved;
-    }
+    const TetLinks x = present_links(mesh, t, positions);
     std::array<std::uint32_t, 4> part;
     for (std::size_t c = 0; c < 4; ++c) part[c] = part_of(t[c], tissue_of[k]);
-    for (const auto& [i, j] : kEdges) {
-      const double w = -dot(g[static_cast<std::size_t>(i)], g[static_cast<std::size_t>(j)]) / (6.0 * six_volume);
-      const auto [low, high] = std::minmax(part[static_cast<std::size_t>(i)], part[static_cast<std::size_t>(j)]);
-      const auto at =
-          std::find_if(pairs[low].begin(), pairs[low].end(), [to = high](const auto& x) { return x.first == to; });
+    for (std::size_t e = 0; e < 6; ++e) {
+      const double w = x.w[e];
+      const auto [low, high] = std::minmax(part[kEdges[e][0]], part[kEdges[e][1]]);
+      const auto at = std::find_if(pairs[low].begin(), pairs[low].end(),
+                                   [to = high](const auto& pair) { return pair.first == to; });
       if (at == pairs[low].end())
         pairs[low].emplace_back(high, w);
       else

@@ -8,6 +8,7 @@
 
 #include "glisson/heat/thermal_tissue.h"
 #include "glisson/mesh.h"
+#include "heat/tet_links.h"
 #include "heat/thermal_curve.h"
 
 namespace glisson::heat {
@@ -41,9 +42,10 @@ struct VertexState {
 
 class HeatBody {
  public:
-  /// @param positions  where vertices are, between which heat is conducted [m]; empty: at rest
-  /// @throws std::invalid_argument where a region has no tissue
-  HeatBody(const TetMesh& mesh, const std::map<int, ThermalTissue>& tissues, std::span<const Vec3d> positions = {});
+  /// @param hollow  regions that are no part of it @param positions  where vertices are, between which heat is conducted [m]; empty: at rest
+  /// @throws std::invalid_argument where another region has no tissue
+  HeatBody(const TetMesh& mesh, const std::map<int, ThermalTissue>& tissues, std::span<const int> hollow = {},
+           std::span<const Vec3d> positions = {});
 
   std::size_t size() const { return begin_.size() - 1; }
   std::span<const Part> parts(std::size_t vertex) const {
@@ -59,12 +61,17 @@ class HeatBody {
   int region_of(std::uint32_t tissue) const { return regions_[tissue]; }
   std::size_t tissues() const { return curves_.size(); }
   double volume(std::size_t vertex) const { return volume_[vertex]; }
+  /// Longest edge at a vertex over the least height of its tets above the faces across from it: no linear field falls from it by more
+  /// than this times what it rises by, to vertices beside it, where tets surround it [BarrenecheaJohnKnobloch2017].
+  double spread(std::size_t vertex) const { return spread_[vertex]; }
 
   VertexState state(std::size_t vertex, double temperature) const;
   /// The temperature at which a vertex contains a heat; not finite where that is not. @param near  where the search begins [°C]
   double temperature_of(std::size_t vertex, double heat, double near) const;
 
  private:
+  static TetLinks present_links(const TetMesh& mesh, const Tet& t, std::span<const Vec3d> positions);
+  void find_spreads(const TetMesh& mesh, const std::vector<std::uint32_t>& tissue_of, std::span<const Vec3d> positions);
   void find_parts(const TetMesh& mesh, const std::vector<std::uint32_t>& tissue_of);
   void find_links(const TetMesh& mesh, const std::vector<std::uint32_t>& tissue_of, std::span<const Vec3d> positions);
   std::uint32_t part_of(std::uint32_t vertex, std::uint32_t tissue) const;
@@ -74,7 +81,7 @@ class HeatBody {
   std::vector<std::size_t> begin_;
   std::vector<Part> parts_;
   std::vector<std::uint32_t> vertex_of_;
-  std::vector<double> volume_;
+  std::vector<double> volume_, spread_;
   Links links_;
   std::vector<NegativeLink> negative_;
 };

@@ -14,14 +14,14 @@ constexpr double kMoves = 1e-11;  // of a temperature, by one flow too large [K]
 
 FlowFinder::FlowFinder(const HeatBody& body, Blocks& blocks)
     : body_(&body), blocks_(&blocks), states_(body.size()), conducted_(body.part_count(), 0.0), left_(body.links().w),
-      positive_sum_(body.part_count(), 0.0), left_sum_(body.part_count(), 0.0),
+      positive_sum_(body.part_count(), 0.0), negative_sum_(body.part_count(), 0.0), left_sum_(body.part_count(), 0.0),
       shares_(body.negative_links().size(), 1.0), rise_(body.size(), 1.0), fall_(body.size(), 1.0) {
   if (body.tissues() > 1) ratio_.assign(body.part_count(), 1.0);
   const Links& links = body.links();
   for (std::size_t p = 0; p < body.part_count(); ++p) {
     for (std::uint32_t k = links.begin[p]; k < links.negative[p]; ++k) positive_sum_[p] += left_[k];
-    left_sum_[p] = positive_sum_[p];
-    for (std::uint32_t k = links.negative[p]; k < links.begin[p + 1]; ++k) left_sum_[p] += left_[k];
+    for (std::uint32_t k = links.negative[p]; k < links.begin[p + 1]; ++k) negative_sum_[p] -= left_[k];
+    left_sum_[p] = positive_sum_[p] - negative_sum_[p];
   }
 }
 
@@ -82,31 +82,49 @@ double FlowFinder::conduction(std::size_t vertex) const {
   return sum;
 }
 
-void FlowFinder::find_allowed() {
+// Of a vertex, in W; sums of flows and of their sizes, which at an extreme are the same to the last bit.
+struct FlowFinder::Around {
+  double along = 0.0, along_size = 0.0, against = 0.0, against_size = 0.0;
+  double up = 0.0, down = 0.0;  // γ Σ |w| (Θ_+ − Θ), γ Σ |w| (Θ − Θ_−)
+};
+
+FlowFinder::Around FlowFinder::around(std::size_t vertex) const {
   const Links& links = body_->links();
+  Around sums;
+  // A vertex between two tissues is an extreme of each where heat goes through their face: so the tissues' are taken together.
+  double up = 0.0, down = 0.0, negative = 0.0;
+  const std::size_t first = body_->first_part(vertex), last = first + body_->parts(vertex).size();
+  for (std::size_t p = first; p < last; ++p) {
+    const double here = conducted_[p];
+    double high = 0.0, low = 0.0;
+    const auto add = [&](std::uint32_t k, double& sum, double& size) {
+      const double difference = conducted_[links.to[k]] - here, flow = links.w[k] * difference;
+      sum += flow, size += std::abs(flow);
+      high = std::max(high, difference), low = std::min(low, difference);
+    };
+    for (std::uint32_t k = links.begin[p]; k < links.negative[p]; ++k) add(k, sums.along, sums.along_size);
+    for (std::uint32_t k = links.negative[p]; k < links.begin[p + 1]; ++k) add(k, sums.against, sums.against_size);
+    const double ratio = ratio_.empty() ? 1.0 : ratio_[p];
+    up = std::max(up, high / ratio), down = std::max(down, -low / ratio);
+    negative += ratio * negative_sum_[p];
+  }
+  negative *= body_->spread(vertex);
+  sums.up = negative * up, sums.down = negative * down;
+  return sums;
+}
+
+void FlowFinder::find_allowed(std::span<const double> else_in) {
+  constexpr double kAll = std::numeric_limits<double>::infinity();
   whole_ = blocks_->sums<1>([&](std::size_t begin, std::size_t end) -> std::array<double, 1> {
     double whole = 0.0;
     for (std::size_t i = begin; i < end; ++i) {
-      // Sums of flows and of their sizes: at an extreme both are the same to the last bit, so that what is allowed is 0 there.
-      double sum = 0.0, size = 0.0, against = 0.0, against_size = 0.0;
-      const std::size_t first = body_->first_part(i), last = first + body_->parts(i).size();
-      for (std::size_t p = first; p < last; ++p) {
-        const double here = conducted_[p];
-        for (std::uint32_t k = links.begin[p]; k < links.negative[p]; ++k) {
-          const double flow = links.w[k] * (conducted_[links.to[k]] - here);
-          sum += flow, size += std::abs(flow);
-        }
-        for (std::uint32_t k = links.negative[p]; k < links.begin[p + 1]; ++k) {
-          const double flow = links.w[k] * (conducted_[links.to[k]] - here);
-          against += flow, against_size += std::abs(flow);
-        }
-      }
-      const double in = size + sum, out = size - sum, against_in = against_size + against,
-                   against_out = against_size - against;  // twice
-      constexpr double kAll = std::numeric_limits<double>::infinity();
-      rise_[i] = against_in > 0.0 ? in / against_in : kAll;
-      fall_[i] = against_out > 0.0 ? out / against_out : kAll;
-      whole += size + against_size;
+      const Around x = around(i);
+      const double in = x.along_size + x.along + 2.0 * (x.up + std::max(0.0, else_in[i])),
+                   out = x.along_size - x.along + 2.0 * (x.down + std::max(0.0, -else_in[i])),
+                   against_in = x.against_size + x.against, against_out = x.against_size - x.against;  // twice
+      rise_[i] = against_in > 0.0 && else_in[i] < kAll ? in / against_in : kAll;
+      fall_[i] = against_out > 0.0 && else_in[i] < kAll ? out / against_out : kAll;
+      whole += x.along_size + x.against_size;
     }
     return {0.5 * whole};
   })[0];
@@ -142,15 +160,15 @@ bool FlowFinder::set_left(double& limited, const Leave& leave) {
   return true;
 }
 
-void FlowFinder::limit(double share, double& limited) {
-  find_allowed();
+void FlowFinder::limit(double share, std::span<const double> else_in, double& limited) {
+  find_allowed(else_in);
   set_left(limited, [share](double, double allowed, double, std::uint32_t, std::uint32_t) {
     return std::min(1.0, share * allowed);
   });
 }
 
-bool FlowFinder::tighten(double share, double h, double& limited) {
-  find_allowed();
+bool FlowFinder::tighten(double share, std::span<const double> else_in, double h, double& limited) {
+  find_allowed(else_in);
   return set_left(limited, [&](double before, double allowed, double flow, std::uint32_t a, std::uint32_t b) {
     const bool moves =
         h * (before - allowed) * std::abs(flow) > kMoves * std::min(states_[a].capacity, states_[b].capacity);

@@ -1,8 +1,11 @@
 // heat_flows.h — what flows into each vertex at given temperatures, and what the limiter leaves of conductances below 0.
 //
-// Flows against the fall of temperature, over conductances below 0, may not exceed those along it, vertex by vertex: at an extreme these
-// are all on one side, so that no flow makes it larger [KuzminShashkovSvyatskiy2009]. What is left of each stays as it is until limit()
-// is called again: with shares that stay, the flows are a symmetric operator on ∫ k dT.
+// Flows into a vertex against the fall of temperature, over conductances below 0, may not exceed Q⁺, those out of it Q⁻:
+//   Q± = flows along the fall + γ Σ |w| |Θ_± − Θ| + what else flows in (Q⁺) or out (Q⁻),   w < 0, Θ_± largest and least beside it
+// "Else" are blood, surface, sources and what the vertex had and gave. At an extreme that nothing of these makes, Q is 0, so that no such
+// flow makes one. With γ the spread of a vertex nothing is taken of linear fields [BarrenecheaJohnKnobloch2017]; of vertices whose
+// temperature is given nothing is asked. What is left of each flow stays as it is until limit() is called again: with shares that
+// stay, the flows are a symmetric operator on ∫ k dT. What one vertex loses another gets [KuzminShashkovSvyatskiy2009].
 #pragma once
 
 #include <span>
@@ -50,18 +53,21 @@ class FlowFinder {
 
   bool has_negative() const { return !body_->negative_links().empty(); }
   /// Leaves of each conductance below 0 a share of what these temperatures allow, all of it where that is enough.
-  /// @param share  at most 1 @param limited  as in Flows
-  void limit(double share, double& limited);
+  /// @param share  at most 1 @param else_in  what else flows into each vertex [W]; infinite where its temperature is given
+  /// @param limited  as in Flows
+  void limit(double share, std::span<const double> else_in, double& limited);
   /// Takes from those that leave more than these temperatures allow, where that would move a temperature. @param h  length of the step [s]
   /// @return whether it did
-  bool tighten(double share, double h, double& limited);
+  bool tighten(double share, std::span<const double> else_in, double h, double& limited);
 
   /// What is left of each link [m], as body.links().w, and the sum of each row.
   std::span<const double> left() const { return left_; }
   std::span<const double> left_sum() const { return left_sum_; }
 
  private:
-  void find_allowed();
+  void find_allowed(std::span<const double> else_in);
+  struct Around;
+  Around around(std::size_t vertex) const;
   template <class Leave>
   bool set_left(double& limited, const Leave& leave);
 
@@ -69,9 +75,9 @@ class FlowFinder {
   Blocks* blocks_;
   std::vector<VertexState> states_;
   std::vector<double> conducted_, ratio_;
-  std::vector<double> left_, positive_sum_, left_sum_;
+  std::vector<double> left_, positive_sum_, negative_sum_, left_sum_;
   std::vector<double> shares_;  // left of each negative link
-  // Of each vertex: what flows along the fall of temperature, in and out, over what flows against it.
+  // Of each vertex: Q⁺ and Q⁻ over what flows against the fall of temperature, in and out.
   std::vector<double> rise_, fall_;
   double whole_ = 0.0;
 };

@@ -1,6 +1,7 @@
 #include "glisson/heat/heat_simulation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -10,6 +11,7 @@
 #include "base/text.h"
 #include "heat/heat_simulation_impl.h"
 #include "mesh/inspect/tet_locator.h"
+#include "mesh/topology/faces.h"
 #include "mesh/topology/require_valid.h"
 
 namespace glisson {
@@ -70,8 +72,8 @@ double value_of(const TimeFunction<double>& f, double time, const char* what) {
 }  // namespace
 
 HeatSimulation::Impl::Impl(TetMesh given, const std::map<int, ThermalTissue>& tissues, const HeatOptions& options)
-    : mesh_(checked(std::move(given))), tissues_(checked(tissues)), options_(checked(options)), body_(mesh_, tissues_),
-      held_(mesh_.vertices.size(), 0) {
+    : mesh_(checked(std::move(given))), tissues_(checked(tissues)), options_(checked(options)),
+      body_(mesh_, tissues_, options_.hollow), held_(mesh_.vertices.size(), 0) {
   rebuild();
   now_.temperature.assign(held_.size(), options.temperature);
   now_.history = history_->begin(now_.temperature);
@@ -105,6 +107,50 @@ SurfaceHeat HeatSimulation::Impl::surface_of(const std::string& set) const {
   return surface;
 }
 
+bool HeatSimulation::Impl::is_hollow(int region) const {
+  return std::find(options_.hollow.begin(), options_.hollow.end(), region) != options_.hollow.end();
+}
+
+SurfaceHeat HeatSimulation::Impl::wall_of(int region) const {
+  if (!is_hollow(region)) {
+    throw std::invalid_argument("heat: region " + std::to_string(region) +
+                                " is tissue and no vessel; name it in HeatOptions::hollow");
+  }
+  std::map<std::uint32_t, double> area;
+  detail::for_each_face(mesh_, {}, [&](std::span<const detail::FaceSide> sides) {
+    if (sides.size() != 2) return;
+    const int a = mesh_.region_of(sides[0].tet), b = mesh_.region_of(sides[1].tet);
+    if ((a == region) == (b == region) || is_hollow(a == region ? b : a)) return;
+    std::array<Vec3d, 3> x;
+    const Tet& t = mesh_.tets[sides[0].tet];
+    const auto& corners = detail::kFaceCorners[sides[0].corner];
+    const std::span<const Vec3d> at = positions_.empty() ? mesh_.vertices : positions_;
+    for (std::size_t c = 0; c < 3; ++c) x[c] = at[t[corners[c]]];
+    for (const std::uint8_t c : corners) area[t[c]] += norm(detail::area_vector(x)) / 3.0;
+  });
+  if (area.empty())
+    throw std::invalid_argument("heat: the vessel of region " + std::to_string(region) + " has no face to tissue");
+  SurfaceHeat wall;
+  for (const auto& [v, a] : area) wall.vertices.push_back(v), wall.area.push_back(a);
+  return wall;
+}
+
+void HeatSimulation::Impl::add_convection(SurfaceHeat surface, Place place, TimeFunction<double> coefficient,
+                                          TimeFunction<double> ambient) {
+  surface.what = SurfaceHeat::What::convection;
+  surfaces_.push_back({std::move(place), std::move(surface), std::move(ambient), std::move(coefficient)});
+}
+
+void HeatSimulation::Impl::add_radio(RadioFrequency radio) {
+  std::vector<const ThermalTissue*> tissue_of;
+  for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
+    const int region = mesh_.region_of(t);
+    tissue_of.push_back(is_hollow(region) ? nullptr : &tissues_.at(region));
+  }
+  radio_.emplace_back(mesh_, std::move(tissue_of), std::move(radio));
+  now_.radio.emplace_back();
+}
+
 void HeatSimulation::Impl::add_line(const LineSource& source) {
   if (!source.power_per_length && !source.temperature) {
     throw std::invalid_argument(
@@ -117,11 +163,11 @@ void HeatSimulation::Impl::add_line(const LineSource& source) {
         "; c (T_s − T) needs both");
   }
   const std::map<std::uint32_t, double> share = shares_of_line(source);
-  if (source.power_per_length) sources_.push_back({source, 0, {share.begin(), share.end()}, source.power_per_length});
+  if (source.power_per_length) sources_.push_back({source, {share.begin(), share.end()}, source.power_per_length});
   if (!source.temperature) return;
   SurfaceHeat line{.what = SurfaceHeat::What::line, .vertices = {}, .area = {}};
   for (const auto& [v, length] : share) line.vertices.push_back(v), line.area.push_back(length);
-  surfaces_.push_back({"", source, std::move(line), source.temperature, source.coefficient});
+  surfaces_.push_back({source, std::move(line), source.temperature, source.coefficient});
 }
 
 namespace {
@@ -176,7 +222,50 @@ double HeatSimulation::Impl::next_corner() const {
   for (const TimedSurface& x : surfaces_)
     next = std::min({next, x.value.corners.after(now_.time), x.coefficient.corners.after(now_.time)});
   for (const Source& x : sources_) next = std::min(next, x.power.corners.after(now_.time));
+  for (const heat::JouleHeat& x : radio_) {
+    next = std::min({next, x.radio().voltage.corners.after(now_.time), x.radio().power.corners.after(now_.time)});
+  }
   return next;
+}
+
+std::vector<SurfaceHeat> HeatSimulation::Impl::surfaces_at(double time) {
+  std::vector<SurfaceHeat> surfaces;
+  for (TimedSurface& x : surfaces_) {
+    x.heat.value = value_of(x.value, time, name_of(x.heat.what));
+    if (x.coefficient) {
+      const bool line = x.heat.what == SurfaceHeat::What::line;
+      x.heat.coefficient =
+          value_of(x.coefficient, time, line ? "coefficient of a line source" : "coefficient of convection");
+      if (x.heat.coefficient < 0.0) {
+        throw std::invalid_argument(std::string("heat: the coefficient of ") + (line ? "a line source" : "convection") +
+                                    " at " + detail::show(time) + " s is " + detail::show(x.heat.coefficient) +
+                                    (line ? " W/(m K); allowed: ≥ 0" : " W/(m² K); allowed: ≥ 0"));
+      }
+    }
+    surfaces.push_back(x.heat);
+  }
+  return surfaces;
+}
+
+std::vector<double> HeatSimulation::Impl::sources_at(double time) const {
+  std::vector<double> sum(now_.temperature.size(), 0.0);
+  for (const Source& x : sources_) {
+    const double power = value_of(x.power, time, "power of a source");
+    for (const auto& [v, share] : x.shares) sum[v] += share * power;
+  }
+  for (std::size_t k = 0; k < radio_.size(); ++k) {
+    const double voltage = radio_[k].voltage_at(time, 1.0 / now_.radio[k].resistance), scale = voltage * voltage;
+    if (scale == 0.0) continue;
+    for (std::size_t v = 0; v < sum.size(); ++v) sum[v] += scale * radio_[k].heat()[v];
+  }
+  return sum;
+}
+
+void HeatSimulation::Impl::find_potentials() {
+  for (std::size_t k = 0; k < radio_.size(); ++k) {
+    RadioState& now = now_.radio[k];
+    now.resistance = 1.0 / radio_[k].solve(now_.temperature, stepper_->blocks(), now.potential);
+  }
 }
 
 std::optional<HeatSimulation::Impl::Trial> HeatSimulation::Impl::make(double h) {
@@ -187,23 +276,8 @@ std::optional<HeatSimulation::Impl::Trial> HeatSimulation::Impl::make(double h) 
     const double t = value_of(x.temperature, end, "held temperature");
     for (const std::uint32_t v : x.vertices) trial.temperature[v] = t;
   }
-  std::vector<SurfaceHeat> surfaces;
-  for (TimedSurface& x : surfaces_) {
-    x.heat.value = value_of(x.value, end, name_of(x.heat.what));
-    if (x.coefficient) {
-      x.heat.coefficient = value_of(x.coefficient, end, "coefficient of a line source");
-      if (x.heat.coefficient < 0.0) {
-        throw std::invalid_argument("heat: the coefficient of a line source at " + detail::show(end) + " s is " +
-                                    detail::show(x.heat.coefficient) + " W/(m K); allowed: ≥ 0");
-      }
-    }
-    surfaces.push_back(x.heat);
-  }
-  trial.sources.assign(now_.temperature.size(), 0.0);
-  for (const Source& x : sources_) {
-    const double power = value_of(x.power, end, "power of a source");
-    for (const auto& [v, share] : x.shares) trial.sources[v] += share * power;
-  }
+  const std::vector<SurfaceHeat> surfaces = surfaces_at(end);
+  trial.sources = sources_at(end);
   const HeatStepper::Input in{h, now_.heat, trial.sources, held_, now_.history.dead, surfaces};
   const std::vector<double> here = trial.temperature;
   if (!now_.rate.empty()) {
@@ -254,10 +328,16 @@ void HeatSimulation::Impl::accept(double h, Trial& trial) {
   }
   history_->add(h, earlier, now_.temperature, stepper_->blocks(), now_.history);
   now_.limited_share = trial.flows.limited;
+  for (std::size_t k = 0; k < radio_.size(); ++k) {
+    RadioState& radio = now_.radio[k];
+    radio.voltage = radio_[k].voltage_at(now_.time + h, 1.0 / radio.resistance);
+    radio.power = radio.voltage * radio.voltage / radio.resistance;
+  }
   now_.time += h, now_.step_before = h, ++now_.steps;
 }
 
 bool HeatSimulation::Impl::make_given(double h, int halvings, int& iterations) {
+  find_potentials();
   if (std::optional<Trial> trial = make(h)) {
     iterations += trial->iterations;
     accept(h, *trial);
@@ -276,6 +356,7 @@ HeatStep HeatSimulation::Impl::step_up_to(double most) {
     now_ = before;
     return {HeatStatus::not_converged, result.step, result.iterations};
   }
+  find_potentials();
   HeatStep result;
   double h = now_.wanted > 0.0 ? now_.wanted : options_.first_step;
   for (int tries = 0; tries < kMostTries; ++tries) {
@@ -310,22 +391,59 @@ void HeatSimulation::hold(std::span<const std::uint32_t> vertices, TimeFunction<
   impl_->hold(vertices, std::move(temperature));
 }
 void HeatSimulation::add_flux(const std::string& set, TimeFunction<double> flux) {
-  impl_->surfaces_.push_back({set, {}, impl_->surface_of(set), std::move(flux)});
+  impl_->surfaces_.push_back({set, impl_->surface_of(set), std::move(flux)});
 }
 void HeatSimulation::add_convection(const std::string& set, double coefficient, TimeFunction<double> ambient) {
   if (!(coefficient > 0.0) || !std::isfinite(coefficient)) {
     throw std::invalid_argument("heat: a coefficient of convection of " + detail::show(coefficient) +
                                 " W/(m² K) is out of range; allowed: > 0");
   }
-  SurfaceHeat surface = impl_->surface_of(set);
-  surface.what = SurfaceHeat::What::convection, surface.coefficient = coefficient;
-  impl_->surfaces_.push_back({set, {}, std::move(surface), std::move(ambient)});
+  impl_->add_convection(
+      impl_->surface_of(set), set, [coefficient](double) { return coefficient; }, std::move(ambient));
+}
+void HeatSimulation::add_convection(const std::string& set, TimeFunction<double> coefficient,
+                                    TimeFunction<double> ambient) {
+  impl_->add_convection(impl_->surface_of(set), set, std::move(coefficient), std::move(ambient));
+}
+void HeatSimulation::add_vessel(int region, TimeFunction<double> coefficient, TimeFunction<double> blood) {
+  SurfaceHeat wall = impl_->wall_of(region);
+  // what flows in it is at the temperature of the blood, for those that look at it
+  std::vector<char> inside(impl_->held_.size(), 0);
+  for (std::size_t t = 0; t < impl_->mesh_.tets.size(); ++t) {
+    if (impl_->mesh_.region_of(t) != region) continue;
+    for (const std::uint32_t v : impl_->mesh_.tets[t]) inside[v] = impl_->body_.volume(v) == 0.0 ? 1 : 0;
+  }
+  std::vector<std::uint32_t> vertices;
+  for (std::uint32_t v = 0; v < inside.size(); ++v) {
+    if (inside[v] != 0) vertices.push_back(v);
+  }
+  impl_->hold(vertices, blood);
+  impl_->add_convection(std::move(wall), region, std::move(coefficient), std::move(blood));
 }
 void HeatSimulation::add_source(int region, TimeFunction<double> power_per_volume) {
   const std::map<std::uint32_t, double> share = impl_->shares_of_region(region);
   if (share.empty()) throw std::invalid_argument("heat: the mesh has no region " + std::to_string(region));
-  impl_->sources_.push_back({{}, region, {share.begin(), share.end()}, std::move(power_per_volume)});
+  if (impl_->is_hollow(region)) throw std::invalid_argument("heat: region " + std::to_string(region) + " is hollow");
+  impl_->sources_.push_back({region, {share.begin(), share.end()}, std::move(power_per_volume)});
 }
+void HeatSimulation::add_source(std::span<const double> power_per_volume, TimeFunction<double> scale) {
+  const TetMesh& mesh = impl_->mesh_;
+  if (power_per_volume.size() != mesh.tets.size()) {
+    throw std::invalid_argument("heat: a pattern of power has " + std::to_string(power_per_volume.size()) +
+                                " values for " + std::to_string(mesh.tets.size()) + " tets");
+  }
+  std::map<std::uint32_t, double> share;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    if (!std::isfinite(power_per_volume[t])) {
+      throw std::invalid_argument("heat: a pattern of power at tet " + std::to_string(t) + " is " +
+                                  detail::show(power_per_volume[t]) + " W/m³, which is no number");
+    }
+    if (impl_->is_hollow(mesh.region_of(t)) || power_per_volume[t] == 0.0) continue;
+    for (const std::uint32_t v : mesh.tets[t]) share[v] += power_per_volume[t] * six_rest_volume(mesh, t) / 24.0;
+  }
+  impl_->sources_.push_back({Impl::Pattern{}, {share.begin(), share.end()}, std::move(scale)});
+}
+void HeatSimulation::add_radio(RadioFrequency radio) { impl_->add_radio(std::move(radio)); }
 void HeatSimulation::add_line_source(const LineSource& source) { impl_->add_line(source); }
 
 HeatStep HeatSimulation::step() { return impl_->step_up_to(std::numeric_limits<double>::infinity()); }

@@ -17,13 +17,15 @@ void HeatSimulation::Impl::rebuild() {
   history_.emplace(body_, options_.isotherms);
 }
 
-/// Areas that heat goes through; of a set that is gone from the surface none.
+/// Areas that heat goes through; of a set or a wall that is gone from the surface none.
 void HeatSimulation::Impl::place_surfaces() {
   for (TimedSurface& x : surfaces_) {
-    if (x.line) continue;
+    const auto* set = std::get_if<std::string>(&x.place);
+    const int* vessel = std::get_if<int>(&x.place);
+    if (set == nullptr && vessel == nullptr) continue;
     heat::SurfaceHeat now;
     try {
-      now = surface_of(x.set);
+      now = set != nullptr ? surface_of(*set) : wall_of(*vessel);
     } catch (const std::invalid_argument&) {
     }
     x.heat.vertices = std::move(now.vertices), x.heat.area = std::move(now.area);
@@ -33,15 +35,26 @@ void HeatSimulation::Impl::place_surfaces() {
 /// Places that sources give heat to, by the material of the body.
 void HeatSimulation::Impl::place_sources() {
   for (TimedSurface& x : surfaces_) {
-    if (!x.line) continue;
+    const auto* line = std::get_if<LineSource>(&x.place);
+    if (line == nullptr) continue;
     x.heat.vertices.clear(), x.heat.area.clear();
-    for (const auto& [v, length] : shares_of_line(*x.line, false))
+    for (const auto& [v, length] : shares_of_line(*line, false))
       x.heat.vertices.push_back(v), x.heat.area.push_back(length);
   }
   for (Source& x : sources_) {
-    const auto share = x.line ? shares_of_line(*x.line, false) : shares_of_region(x.region);
+    const auto* line = std::get_if<LineSource>(&x.place);
+    const auto share = line != nullptr ? shares_of_line(*line, false) : shares_of_region(std::get<int>(x.place));
     x.shares.assign(share.begin(), share.end());
   }
+}
+
+/// @throws std::invalid_argument where a source is bound to the mesh that the body had
+void HeatSimulation::Impl::require_changeable() const {
+  const auto is_pattern = [](const Source& x) { return std::holds_alternative<Pattern>(x.place); };
+  if (radio_.empty() && std::none_of(sources_.begin(), sources_.end(), is_pattern)) return;
+  throw std::invalid_argument(std::string("heat: change_mesh: ") +
+                              (radio_.empty() ? "a pattern of power" : "radio frequency") +
+                              " belongs to the tets that the body had; give power by region or line, or leave the mesh as it is");
 }
 
 std::map<std::uint32_t, double> HeatSimulation::Impl::shares_of_region(int region) const {
@@ -60,12 +73,13 @@ void HeatSimulation::Impl::set_positions(std::span<const Vec3d> positions) {
                                 " vertices");
   }
   positions_.assign(positions.begin(), positions.end());
-  body_ = heat::HeatBody(mesh_, tissues_, positions_);
+  body_ = heat::HeatBody(mesh_, tissues_, options_.hollow, positions_);
   rebuild();
   place_surfaces();
 }
 
 void HeatSimulation::Impl::change_mesh(TetMesh mesh, std::span<const std::uint32_t> origins) {
+  require_changeable();
   const std::size_t before = mesh_.vertices.size();
   if (mesh.vertices.size() != before + origins.size() ||
       std::any_of(origins.begin(), origins.end(), [&](std::uint32_t v) { return v >= before; })) {
@@ -77,7 +91,7 @@ void HeatSimulation::Impl::change_mesh(TetMesh mesh, std::span<const std::uint32
   for (const std::uint32_t v : origins) {
     if (!positions.empty()) positions.push_back(Vec3d(positions[v]));
   }
-  heat::HeatBody body(mesh, tissues_, positions);
+  heat::HeatBody body(mesh, tissues_, options_.hollow, positions);
   const auto extend = [&](auto& list) {
     for (const std::uint32_t v : origins) {
       const auto value = list[v];

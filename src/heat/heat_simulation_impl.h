@@ -5,10 +5,12 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "glisson/heat/heat_simulation.h"
 #include "heat/heat_step.h"
+#include "heat/joule_heat.h"
 #include "heat/keep_history.h"
 
 namespace glisson {
@@ -21,17 +23,18 @@ class HeatSimulation::Impl {
     std::vector<std::uint32_t> vertices;
     TimeFunction<double> temperature;
   };
+  /// Where heat goes in: a set of the surface, a region or the wall of a vessel, a line; a pattern of tets is bound to the mesh.
+  struct Pattern {};
+  using Place = std::variant<std::string, int, LineSource, Pattern>;
   struct TimedSurface {
-    std::string set;                   // of a part of the surface
-    std::optional<LineSource> line{};  // in place of it
+    Place place;
     heat::SurfaceHeat heat;
     TimeFunction<double> value;
     TimeFunction<double> coefficient{};  // none: that of `heat`
   };
   /// Power by vertex where a function of time is 1.
   struct Source {
-    std::optional<LineSource> line{};
-    int region = 0;  // where it is no line
+    Place place;
     std::vector<std::pair<std::uint32_t, double>> shares;
     TimeFunction<double> power;
   };
@@ -46,13 +49,18 @@ class HeatSimulation::Impl {
   std::vector<Held> holds_;
   std::vector<TimedSurface> surfaces_;
   std::vector<Source> sources_;
+  std::vector<heat::JouleHeat> radio_;
 
   HeatState now_;
   std::vector<char> held_;
 
   void hold(std::span<const std::uint32_t> vertices, TimeFunction<double> temperature);
   heat::SurfaceHeat surface_of(const std::string& set) const;
+  heat::SurfaceHeat wall_of(int region) const;
   std::map<std::uint32_t, double> shares_of_region(int region) const;
+  void add_convection(heat::SurfaceHeat surface, Place place, TimeFunction<double> coefficient, TimeFunction<double> ambient);
+  void add_radio(RadioFrequency radio);
+  bool is_hollow(int region) const;
   void add_line(const LineSource& source);
   /// @param whole  whether it has to lie in the body as a whole
   std::map<std::uint32_t, double> shares_of_line(const LineSource& source, bool whole = true) const;
@@ -69,6 +77,10 @@ class HeatSimulation::Impl {
     double error = 0.0;  // [K]
   };
   std::optional<Trial> make(double h);
+  std::vector<heat::SurfaceHeat> surfaces_at(double time);
+  std::vector<double> sources_at(double time) const;
+  /// The potentials at the temperatures before a step.
+  void find_potentials();
   /// A step of this length, in halves where it does not converge at once.
   bool make_given(double h, int halvings, int& iterations);
   void accept(double h, Trial& trial);
@@ -76,6 +88,7 @@ class HeatSimulation::Impl {
   void rebuild();
   void place_surfaces();
   void place_sources();
+  void require_changeable() const;
 };
 
 }  // namespace glisson

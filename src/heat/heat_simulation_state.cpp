@@ -50,6 +50,8 @@ void HeatSimulation::load_state(HeatState state) {
   }
   if (!is_of(state.history, n, impl_->options_.isotherms.size()))
     throw std::invalid_argument("heat: load_state: the state has the history of another mesh, or of other isotherms");
+  if (state.radio.size() != impl_->radio_.size())
+    throw std::invalid_argument("heat: load_state: the state has the radio frequency of another simulation");
   impl_->now_ = std::move(state);
 }
 
@@ -79,13 +81,18 @@ void HeatSimulation::load(std::istream& in) {
                  (state.rate.empty() || state.rate.size() == n) && is_of(state.history, n, isotherms.size()));
   for (const auto* of : {&state.temperature, &state.heat, &state.rate})
     contents.check(std::all_of(of->begin(), of->end(), [](double x) { return std::isfinite(x); }));
+  contents.check(state.radio.size() == impl_->radio_.size());
+  for (const RadioState& x : state.radio) {
+    contents.check(x.potential.empty() || x.potential.size() == n);
+    contents.check(std::all_of(x.potential.begin(), x.potential.end(), [](double p) { return std::isfinite(p); }));
+  }
   contents.check(std::isfinite(state.time) && std::isfinite(state.step_before) && std::isfinite(state.wanted));
   contents.check(state.time >= 0.0 && state.step_before >= 0.0 && state.wanted >= 0.0);
   impl_->now_ = std::move(state);
 }
 
 void HeatState::archive(Archive& ar) {
-  ar(time, steps, temperature, heat, rate, step_before, wanted, limited_share, history);
+  ar(time, steps, temperature, heat, rate, step_before, wanted, limited_share, history, radio);
   ar(ledger.stored, ledger.held, ledger.surface, ledger.blood, ledger.metabolism, ledger.sources, ledger.removed);
 }
 
@@ -115,7 +122,7 @@ std::vector<double> HeatSimulation::frozen_share() const {
 double HeatSimulation::volume_below(double temperature, std::optional<int> region) const {
   double sum = 0.0;
   for (std::size_t t = 0; t < impl_->mesh_.tets.size(); ++t) {
-    if (region && impl_->mesh_.region_of(t) != *region) continue;
+    if ((region && impl_->mesh_.region_of(t) != *region) || impl_->is_hollow(impl_->mesh_.region_of(t))) continue;
     std::array<double, 4> corners;
     for (std::size_t c = 0; c < 4; ++c) corners[c] = impl_->now_.temperature[impl_->mesh_.tets[t][c]];
     sum += six_rest_volume(impl_->mesh_, t) / 6.0 * heat::share_below(corners, temperature);

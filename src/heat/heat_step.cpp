@@ -41,7 +41,8 @@ class Timed {
 
 HeatStepper::HeatStepper(const HeatBody& body, int threads)
     : body_(&body), blocks_(body.size(), threads), finder_(body, blocks_), solver_(body, blocks_),
-      fixed_(body.size(), 0), links_(body.size(), 0.0), residual_(body.size()), diagonal_(body.size()) {
+      fixed_(body.size(), 0), links_(body.size(), 0.0), residual_(body.size()), diagonal_(body.size()),
+      else_in_(body.size()) {
   const Links& links = body.links();
   for (std::size_t p = 0; p < body.part_count(); ++p) {
     for (std::uint32_t k = links.begin[p]; k < links.begin[p + 1]; ++k)
@@ -74,6 +75,17 @@ HeatStepper::Distance HeatStepper::find_residual(const Input& in, Flows& flows) 
     return worst;
   });
   return {beside, alone};
+}
+
+void HeatStepper::find_else(const Input& in, const Flows& flows) {
+  const std::vector<VertexState>& states = finder_.states();
+  blocks_.run([&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      else_in_[i] = fixed_[i] != 0 ? std::numeric_limits<double>::infinity()
+                                   : flows.blood[i] + flows.metabolism[i] + flows.surface[i] + flows.lines[i] +
+                                         in.sources[i] + (in.heat[i] - states[i].heat) / in.h;
+    }
+  });
 }
 
 void HeatStepper::set_diagonal(const Input& in, const Flows& flows) {
@@ -120,7 +132,8 @@ int HeatStepper::step(const Input& in, std::vector<double>& temperature, Flows& 
     const bool follows = k <= kFreeIterations;  // leaves what these temperatures allow: nothing to tighten
     if (follows && finder_.has_negative()) {
       const Timed t(timed, work_.limiter_seconds);
-      finder_.limit(kFollows, flows.limited);
+      find_else(in, flows);
+      finder_.limit(kFollows, else_in_, flows.limited);
       ++work_.limiter_rounds;
     }
     const auto residual = [&] {
@@ -134,7 +147,8 @@ int HeatStepper::step(const Input& in, std::vector<double>& temperature, Flows& 
     if ((off.beside < kNear || is_exact()) && !follows && finder_.has_negative()) {
       const Timed t(timed, work_.limiter_seconds);
       ++work_.limiter_rounds;
-      tightened = finder_.tighten(kLeaves[std::min(round, kLeaves.size() - 1)], in.h, flows.limited);
+      find_else(in, flows);
+      tightened = finder_.tighten(kLeaves[std::min(round, kLeaves.size() - 1)], else_in_, in.h, flows.limited);
     }
     if (tightened) ++round, off = residual();
     if (is_exact() && !tightened) return k;

@@ -47,6 +47,8 @@ class HeatStepper {
     double alone = 0.0;   ///< by what flows in beside the heat that is there; more than `beside` in long steps
   };
   Distance find_residual(const Input& in, Flows& flows);
+  /// What else than conduction flows into each vertex, less what it takes; infinite where its temperature is given.
+  void find_else(const Input& in, const Flows& flows);
   void set_diagonal(const Input& in, const Flows& flows);
   void change_temperature(double share, std::vector<double>& temperature);
 
@@ -57,7 +59,7 @@ class HeatStepper {
   HeatWork work_;
   std::vector<char> fixed_;    // held, or in no tet
   std::vector<double> links_;  // Σ |w| at a vertex [m]
-  std::vector<double> residual_, diagonal_, change_;
+  std::vector<double> residual_, diagonal_, change_, else_in_;
 };
 
 }  // namespace glisson::heat

@@ -547,6 +547,9 @@ blood_temperature_C = 36
 blood_heat_capacity_J_m3_K = 3.7e6
 metabolic_heat_W_m3 = 4300
 death = { cold_C = -20, cold_time_s = 60, ln_frequency_factor = 200, activation_energy_J_mol = 6e5 }
+electric_conductivity_S_m = 0.2
+electric_rise_per_K = 0.015
+dry_share = 0.02
 [[heat.boundary]]
 set = "x_min"
 times_s = [0, 60]
@@ -563,6 +566,15 @@ flux_W_m2 = 100
 set = "y_max"
 times_s = [0, 30]
 fluxes_W_m2 = [1, 2]
+[[heat.boundary]]
+region = "vein"
+temperature_C = 37
+vessel = { diameter_mm = 8, speed_mm_s = 90, length_mm = 40, conductivity_W_m_K = 0.5, heat_capacity_J_m3_K = 3.7e6, viscosity_Pa_s = 4e-3, density_kg_m3 = 1050 }
+[[heat.boundary]]
+set = "z_max"
+temperature_C = 20
+times_s = [0, 30]
+coefficients_W_m2_K = [10, 0]
 [[heat.probe]]
 name = "left"
 from_m = [0.01, 0.01, 0.01]
@@ -595,6 +607,37 @@ power_W_m3 = 1e5
 [[heat.power]]
 times_s = [0, 10]
 powers_W_m3 = [0, 1e5]
+[[heat.power]]
+total_W = 30
+pattern = { middle_m = [0.01, 0.02, 0.03], axis = [1, 0, 0], across_mm = 5, along_mm = 12 }
+[[heat.power]]
+times_s = [0, 10]
+totals_W = [20, 10]
+[[heat.radio]]
+name = "needle"
+from_m = [0.01, 0.02, 0.01]
+to_m = [0.01, 0.02, 0.05]
+active_length_mm = 20
+radius_mm = 0.8
+ground = "x_min"
+power_W = 25
+[[heat.radio]]
+name = "plates"
+set = "x_max"
+ground = "x_min"
+times_s = [0, 10]
+voltages_V = [10, 20]
+[[heat.radio]]
+name = "constant"
+set = "y_max"
+ground = "x_min"
+voltage_V = 15
+[[heat.radio]]
+name = "table"
+set = "y_max"
+ground = "x_min"
+times_s = [0, 10]
+powers_W = [10, 20]
 [[heat.sensor]]
 name = "one"
 point_m = [0.01, 0.02, 0.03]
@@ -652,8 +695,9 @@ TEST(EveryKey, OfHeatIsRead) {
   t.frozen_specific_heat = 1810, t.latent_heat = 251e3, t.freezing_begins = -1.5, t.freezing_ends = -8.5;
   t.perfusion = 6e-4, t.blood_temperature = 36, t.blood_heat_capacity = 3.7e6, t.metabolic_heat = 4300;
   t.death = TissueDeath{.cold = -20, .cold_time = 60, .ln_frequency_factor = 200, .activation_energy = 6e5};
+  t.electric_conductivity = 0.2, t.electric_rise = 0.015, t.dry_share = 0.02;
   EXPECT_EQ(h.tissues[0].tissue, t);
-  ASSERT_EQ(h.boundaries.size(), 4U);
+  ASSERT_EQ(h.boundaries.size(), 6U);
   EXPECT_EQ(h.boundaries[0].set, "x_min");
   EXPECT_THAT(h.boundaries[0].times, ElementsAre(0.0, 60.0));
   EXPECT_THAT(h.boundaries[0].temperatures, ElementsAre(-10.0, -20.0));
@@ -663,6 +707,15 @@ TEST(EveryKey, OfHeatIsRead) {
   EXPECT_EQ(h.boundaries[1].temperature, 36.5);
   EXPECT_EQ(h.boundaries[2].flux, 100.0);
   EXPECT_THAT(h.boundaries[3].fluxes, ElementsAre(1.0, 2.0));
+  const VesselWall& vessel = h.boundaries[4].vessel.value();
+  EXPECT_DOUBLE_EQ(vessel.diameter, 0.008);
+  EXPECT_DOUBLE_EQ(vessel.speed, 0.09);
+  EXPECT_DOUBLE_EQ(vessel.length, 0.04);
+  EXPECT_EQ(vessel.conductivity, 0.5);
+  EXPECT_EQ(vessel.heat_capacity, 3.7e6);
+  EXPECT_EQ(vessel.viscosity, 4e-3);
+  EXPECT_EQ(vessel.density, 1050.0);
+  EXPECT_THAT(h.boundaries[5].coefficients, ElementsAre(10.0, 0.0));
   ASSERT_EQ(h.probes.size(), 4U);
   EXPECT_EQ(h.probes[0].name, "left");
   EXPECT_EQ(h.probes[0].from, (Vec3d{0.01, 0.01, 0.01}));
@@ -677,6 +730,23 @@ TEST(EveryKey, OfHeatIsRead) {
   EXPECT_THAT(h.probes[3].powers, ElementsAre(-100.0, -200.0));
   EXPECT_EQ(h.powers.at(0).power, 1e5);
   EXPECT_THAT(h.powers.at(1).powers, ElementsAre(0.0, 1e5));
+  EXPECT_EQ(h.powers.at(2).total, 30.0);
+  EXPECT_EQ(h.powers[2].pattern->middle, (Vec3d{0.01, 0.02, 0.03}));
+  EXPECT_EQ(h.powers[2].pattern->axis, (Vec3d{1, 0, 0}));
+  EXPECT_DOUBLE_EQ(h.powers[2].pattern->across, 0.005);
+  EXPECT_DOUBLE_EQ(*h.powers[2].pattern->along, 0.012);
+  EXPECT_THAT(h.powers.at(3).totals, ElementsAre(20.0, 10.0));
+  ASSERT_EQ(h.radios.size(), 4U);
+  EXPECT_EQ(h.radios[0].name, "needle");
+  EXPECT_EQ(*h.radios[0].from, (Vec3d{0.01, 0.02, 0.01}));
+  EXPECT_DOUBLE_EQ(*h.radios[0].active_length, 0.02);
+  EXPECT_DOUBLE_EQ(h.radios[0].radius, 0.0008);
+  EXPECT_EQ(h.radios[0].ground, "x_min");
+  EXPECT_EQ(h.radios[0].power, 25.0);
+  EXPECT_EQ(h.radios[1].set, "x_max");
+  EXPECT_THAT(h.radios[1].voltages, ElementsAre(10.0, 20.0));
+  EXPECT_EQ(h.radios[2].voltage, 15.0);
+  EXPECT_THAT(h.radios[3].powers, ElementsAre(10.0, 20.0));
   EXPECT_EQ(h.sensors.at(0).point, (Vec3d{0.01, 0.02, 0.03}));
   EXPECT_EQ(h.sensors.at(1).count, 4);
   EXPECT_EQ(h.sensors.at(2).region, "core");

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "glisson/heat/vessel_wall.h"
 #include "glisson/scene/heat_run.h"
 #include "glisson/scene/tissue_presets.h"
 #include "scene/scene_text.h"
@@ -244,6 +245,65 @@ TEST(HeatScene, RunsAsTheSimulationDoes) {
   double most = 0.0;
   for (const HeatSample& row : run.rows) most = std::max(most, row.heat[3]);
   EXPECT_GT(most, 0.0) << "it froze";
+}
+
+const std::string kVein = "[[region]]\nname = \"vein\"\nsphere_m = { center = [0.02, 0.02, 0.02], radius = 0.012 }\n";
+
+// A vessel of a scene is blood: its region needs no tissue, its wall takes the coefficient of its flow, over time where that changes.
+TEST(HeatScene, VesselsWithFlow) {
+  const std::string
+      start = kBox + kVein + "[heat]\nduration_s = 60\n" + kAgar,
+      wall =
+          "[[heat.boundary]]\nset = \"x_min\"\ntemperature_C = -60\n[[heat.boundary]]\nregion = \"vein\"\n"
+          "temperature_C = 36\n";
+  const Samples by_law = run_of(start + wall + "vessel = { diameter_mm = 8, speed_mm_s = 120, length_mm = 20 }\n"),
+                by_value =
+                    run_of(start + wall + "coefficient_W_m2_K = " +
+                           std::to_string(wall_coefficient({.diameter = 0.008, .speed = 0.12, .length = 0.02})) + "\n"),
+                off = run_of(start + wall + "times_s = [0, 60]\ncoefficients_W_m2_K = [0, 0]\n");
+  EXPECT_GT(by_law.at_end("surface_J"), 0.0);
+  EXPECT_NEAR(by_law.at_end("surface_J"), by_value.at_end("surface_J"), 1e-5 * by_law.at_end("surface_J"));
+  EXPECT_EQ(off.at_end("surface_J"), 0.0);
+  EXPECT_LT(off.at_end("imbalance_J"), 1e-10 * std::abs(off.at_end("held_J")));
+  EXPECT_THAT(message_of(start + wall + "vessel = { diameter_mm = 30, speed_mm_s = 900 }\n"), HasSubstr("not laminar"));
+  EXPECT_THAT(message_of(start + wall + "vessel = { speed_mm_s = 900 }\n"), HasSubstr("diameter_mm"));
+}
+
+// A total of power in a bell: the ledger has it to rounding, and the warmest place is its middle.
+TEST(HeatScene, PatternsOfPower) {
+  const std::string start = kBox + "[heat]\nduration_s = 30\n" + kAgar +
+                            "[[heat.sensor]]\nname = \"middle\"\npoint_m = [0.01, 0.02, 0.02]\n[[heat.power]]\n";
+  const std::string bell =
+      "pattern = { middle_m = [0.01, 0.02, 0.02], axis = [1, 0, 0], across_mm = 6, along_mm = 9 }\n";
+  const Samples run = run_of(start + "times_s = [0, 10, 10, 30]\ntotals_W = [5, 5, 0, 0]\n" + bell);
+  EXPECT_NEAR(run.at_end("sources_J"), 50.0, 1e-9);
+  EXPECT_EQ(run.at_end("middle_C"), run.at_end("highest_C"));
+  EXPECT_NEAR(run_of(start + "total_W = 2\n").at_end("sources_J"), 60.0, 1e-9) << "evenly";
+  EXPECT_THAT(message_of(start + "power_W_m3 = 100\n" + bell), HasSubstr("pattern"));
+  EXPECT_THAT(build_message_of(start + "total_W = 2\npattern = { middle_m = [5, 0, 0], across_mm = 1 }\n"),
+              HasSubstr("far outside"));
+}
+
+// Radio frequency of a scene: its power is met, its columns are there, and what cannot be is named.
+TEST(HeatScene, RadioFrequency) {
+  const std::string
+      tissue = kAgar + "electric_conductivity_S_m = 0.3\n",
+      start = kBox + "[heat]\nduration_s = 30\n" + tissue + "[[heat.radio]]\nname = \"rf\"\nground = \"z_min\"\n",
+      needle = "from_m = [0.02, 0.02, 0.01]\nto_m = [0.02, 0.02, 0.04]\nactive_length_mm = 15\nradius_mm = 1\n";
+  const Samples run = run_of(start + needle + "power_W = 4\n");
+  EXPECT_NEAR(run.at_end("sources_J"), 120.0, 1e-8);
+  EXPECT_NEAR(run.at_end("rf_power_W"), 4.0, 1e-12);
+  EXPECT_NEAR(run.at_end("rf_voltage_V"), std::sqrt(4.0 * run.at_end("rf_ohm")), 1e-9);
+  const Samples plates = run_of(start + "set = \"z_max\"\nvoltage_V = 20\n");
+  EXPECT_GT(plates.at_end("rf_ohm"), 0.0);
+  EXPECT_LT(plates.at_end("rf_ohm"), 1.0 / (0.3 * 0.04)) << "warm tissue leads better than at 37 °C";
+  EXPECT_THAT(message_of(start + needle), HasSubstr("give one of `voltage_V`"));
+  EXPECT_THAT(message_of(start + "voltage_V = 20\n"), HasSubstr("give one of `set`"));
+  EXPECT_THAT(message_of(start + "set = \"z_max\"\nradius_mm = 1\nvoltage_V = 20\n"),
+              HasSubstr("needs `from_m` with it"));
+  EXPECT_THAT(build_message_of(start + "from_m = [0.02, 0.02, 0.01]\nto_m = [0.02, 0.02, 0.05]\nvoltage_V = 20\n"),
+              HasSubstr("leaves the body"));
+  EXPECT_THAT(build_message_of(start + "set = \"z_min\"\nvoltage_V = 20\n"), HasSubstr("share vertex"));
 }
 
 // A run that is stopped keeps what it has and says so; one below absolute zero ends with the way out.

@@ -7,7 +7,8 @@
 //
 // Linear elements with the capacity lumped at the vertices, backward Euler in time. Of two vertices of a tet
 // flows w (Θ_j − Θ_i), Θ = ∫ k dT, w = −V ∇φ_i·∇φ_j: conservative, exact for linear fields of one tissue. Where w summed over the
-// tets of an edge is negative, as between obtuse tets, a limiter keeps the flow from making extremes [KuzminShashkovSvyatskiy2009].
+// tets of an edge is negative, as between obtuse tets, a limiter keeps the flow from making extremes; it takes nothing of linear
+// fields [KuzminShashkovSvyatskiy2009; BarrenecheaJohnKnobloch2017].
 //
 // The heat of a vertex is what has flowed into it; its temperature follows from that. So the balance of a step is exact to rounding,
 // and latent heat is not stepped over.
@@ -25,6 +26,7 @@
 #include "glisson/archive.h"
 #include "glisson/field.h"
 #include "glisson/heat/heat_history.h"
+#include "glisson/heat/radio_frequency.h"
 #include "glisson/heat/thermal_tissue.h"
 #include "glisson/mesh.h"
 #include "glisson/time_function.h"
@@ -38,7 +40,8 @@ struct HeatOptions {
   double longest_step = 60.0;  ///< of those [s]
   double tolerance = 0.02;     ///< error of temperature that one step may add, mean square over the volume [K]
   std::vector<double> isotherms{0.0, -20.0, -40.0};  ///< for which the time below them is kept, place by place [°C]
-  int threads = 0;  ///< 0: chosen by the size of the body; the result is the same bytes on any number
+  std::vector<int> hollow{};  ///< numbers of regions that are no tissue, such as vessels: insulated but for add_vessel
+  int threads = 0;            ///< 0: chosen by the size of the body; the result is the same bytes on any number
 
   template <class Take>
   static constexpr auto fields(Take take) {
@@ -55,7 +58,7 @@ struct HeatOptions {
                       "for which the time below them is kept, place by place")
                     .keyed("isotherms_C")
                     .advise("temperatures are in °C, not in K"),
-                no_key("threads", &O::threads, between(0, 1024)));
+                no_key("hollow", &O::hollow), no_key("threads", &O::threads, between(0, 1024)));
   }
 };
 
@@ -75,7 +78,7 @@ struct LineSource {
 struct HeatLedger {
   double stored = 0.0;   ///< change of the body's heat content
   double held = 0.0;     ///< through vertices whose temperature is held
-  double surface = 0.0;  ///< flux and convection
+  double surface = 0.0;  ///< flux, convection and walls of vessels
   double blood = 0.0;    ///< perfusion
   double metabolism = 0.0;
   double sources = 0.0;
@@ -113,8 +116,9 @@ struct HeatState {
   std::vector<double> rate;                ///< of temperature in the last step [K/s]; empty: no step was made
   double step_before = 0.0, wanted = 0.0;  ///< length of the last step, and of the next as the error of that allows [s]
   HeatLedger ledger;
-  double limited_share = 0.0;  ///< conduction that the limiter took away over all conduction, of the last step [-]
-  HeatHistory history;         ///< what each vertex has been through
+  double limited_share = 0.0;     ///< conduction that the limiter took away over all conduction, of the last step [-]
+  HeatHistory history;            ///< what each vertex has been through
+  std::vector<RadioState> radio;  ///< of each add_radio()
 
   void archive(Archive& ar);
 };
@@ -136,10 +140,20 @@ class HeatSimulation {
   void add_flux(const std::string& set, TimeFunction<double> flux);
   /// Heat h (T_a − T) through these triangles. @param coefficient  h [W/(m² K)] @param ambient  T_a [°C]
   void add_convection(const std::string& set, double coefficient, TimeFunction<double> ambient);
+  void add_convection(const std::string& set, TimeFunction<double> coefficient, TimeFunction<double> ambient);
+  /// Blood through a region of HeatOptions::hollow: heat h (T_b − T) through its faces to tissue. @param coefficient  h ≥ 0 [W/(m² K)],
+  /// as of wall_coefficient() (vessel_wall.h) @param blood  T_b [°C]
+  void add_vessel(int region, TimeFunction<double> coefficient, TimeFunction<double> blood);
   /// Heat per volume of a region [W/m³].
   void add_source(int region, TimeFunction<double> power_per_volume);
+  /// A given pattern, such as what a microwave antenna's tissue absorbs (density times SAR). @param power_per_volume  of each tet [W/m³]
+  /// @param scale  what it is multiplied by, over time [-]
+  void add_source(std::span<const double> power_per_volume, TimeFunction<double> scale);
   /// @throws std::invalid_argument where a part of it lies outside the body, or it gives no heat
   void add_line_source(const LineSource& source);
+  /// Current between electrodes through tissues that have an electric_conductivity (radio_frequency.h). The state has its potential,
+  /// voltage, power and resistance.
+  void add_radio(RadioFrequency radio);
 
   /// Conducts from now on in the shape that a body has, as its mechanics move it; what the material contains, gets from blood and
   /// sources goes by its shape at rest. A tet that is nearly flat or inverted conducts as it did at rest.

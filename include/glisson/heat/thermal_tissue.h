@@ -52,26 +52,35 @@ struct ThermalTissue {
   double blood_heat_capacity = 3.6e6;    ///< ρ_b c_b [J/(m³ K)]
   double metabolic_heat = 0.0;           ///< q [W/m³]
   std::optional<TissueDeath> death{};    ///< none: it does not die
+  /// σ at 37 °C and its rise per kelvin, of what is not frozen [S/m], [1/K]: σ(T) in electric_conductivity() below. 0: no current
+  double electric_conductivity = 0.0, electric_rise = 0.02;
+  double dry_share = 0.01;  ///< of σ that is left of tissue that has boiled dry [-]
 
   template <class Take>
   static constexpr auto fields(Take take) {
     using T = ThermalTissue;
-    return take(field("density", &T::density, "kg/m³", above(0), "density of tissue and ice"),
-                field("conductivity", &T::conductivity, "W/(m K)", above(0), "thermal conductivity"),
-                field("frozen_conductivity", &T::frozen_conductivity, "W/(m K)", above(0), "that of ice"),
-                field("specific_heat", &T::specific_heat, "J/(kg K)", above(0), "specific heat"),
-                field("frozen_specific_heat", &T::frozen_specific_heat, "J/(kg K)", above(0), "that of ice"),
-                field("latent_heat", &T::latent_heat, "J/kg", at_least(0), "heat of freezing"),
-                field("freezing_begins", &T::freezing_begins, "°C", between(-100, 200), "all is liquid above it")
-                    .keyed("freezing_begins_C"),
-                field("freezing_ends", &T::freezing_ends, "°C", between(-200, 200), "all is ice below it")
-                    .keyed("freezing_ends_C"),
-                field("perfusion", &T::perfusion, "1/s", at_least(0), "volume of blood per volume of tissue and time"),
-                field("blood_temperature", &T::blood_temperature, "°C", between(0, 60), "of arteries")
-                    .keyed("blood_temperature_C"),
-                field("blood_heat_capacity", &T::blood_heat_capacity, "J/(m³ K)", above(0), "of blood, per volume"),
-                field("metabolic_heat", &T::metabolic_heat, "W/m³", at_least(0), "heat of metabolism"),
-                field("death", &T::death, "when it dies, and has no blood any more").otherwise("it does not die"));
+    return take(
+        field("density", &T::density, "kg/m³", above(0), "density of tissue and ice"),
+        field("conductivity", &T::conductivity, "W/(m K)", above(0), "thermal conductivity"),
+        field("frozen_conductivity", &T::frozen_conductivity, "W/(m K)", above(0), "that of ice"),
+        field("specific_heat", &T::specific_heat, "J/(kg K)", above(0), "specific heat"),
+        field("frozen_specific_heat", &T::frozen_specific_heat, "J/(kg K)", above(0), "that of ice"),
+        field("latent_heat", &T::latent_heat, "J/kg", at_least(0), "heat of freezing"),
+        field("freezing_begins", &T::freezing_begins, "°C", between(-100, 200), "all is liquid above it")
+            .keyed("freezing_begins_C"),
+        field("freezing_ends", &T::freezing_ends, "°C", between(-200, 200), "all is ice below it")
+            .keyed("freezing_ends_C"),
+        field("perfusion", &T::perfusion, "1/s", at_least(0), "volume of blood per volume of tissue and time"),
+        field("blood_temperature", &T::blood_temperature, "°C", between(0, 60), "of arteries")
+            .keyed("blood_temperature_C"),
+        field("blood_heat_capacity", &T::blood_heat_capacity, "J/(m³ K)", above(0), "of blood, per volume"),
+        field("metabolic_heat", &T::metabolic_heat, "W/m³", at_least(0), "heat of metabolism"),
+        field("death", &T::death, "when it dies, and has no blood any more").otherwise("it does not die"),
+        field("electric_conductivity", &T::electric_conductivity, "S/m", at_least(0),
+              "electric conductivity at 37 °C and at the frequency of `[[heat.radio]]`; 0: it leads no current"),
+        field("electric_rise", &T::electric_rise, "1/K", between(0, 0.2), "rise of that with temperature"),
+        field("dry_share", &T::dry_share, "-", between(1e-6, 1),
+              "what is left of it above 100 °C, where tissue boils dry"));
   }
   Fault check() const;
   bool operator==(const ThermalTissue&) const = default;
@@ -88,5 +97,9 @@ struct ThermalState {
 };
 /// @param temperature  [°C]
 ThermalState thermal_state(const ThermalTissue& tissue, double temperature);
+
+/// Electric conductivity at a temperature [S/m]: σ (1 + a (T − 37)) [Chang2003] times the share that is not frozen. From 100 °C on it
+/// falls to `dry_share` of that at 100 °C, which it has at 105 °C: the width is this program's. Never below σ/10⁴.
+double electric_conductivity(const ThermalTissue& tissue, double temperature);
 
 }  // namespace glisson

@@ -10,6 +10,7 @@
 
 #include "glisson/heat/heat_simulation.h"
 #include "glisson/heat/thermal_tissue.h"
+#include "glisson/heat/vessel_wall.h"
 #include "glisson/instruments/ice.h"
 #include "glisson/math.h"
 #include "glisson/time_function.h"
@@ -31,10 +32,11 @@ struct HeatTissueSpec {
 
 /// What a part of the surface, or a region, is held at or gets.
 struct HeatBoundarySpec {
-  std::string set;                                       ///< of vertices
-  std::string region;                                    ///< in its place: all vertices of a region, such as a vessel
-  std::optional<double> temperature, flux, coefficient;  ///< [°C], [W/m²], [W/(m² K)]
-  std::vector<double> times, temperatures, fluxes;       ///< [s], [°C], [W/m²]
+  std::string set;                                                ///< of vertices
+  std::string region;                                             ///< in its place: a region, such as a vessel
+  std::optional<double> temperature, flux, coefficient;           ///< [°C], [W/m²], [W/(m² K)]
+  std::optional<VesselWall> vessel;                               ///< in place of a coefficient
+  std::vector<double> times, temperatures, fluxes, coefficients;  ///< [s], [°C], [W/m²], [W/(m² K)]
   int cycles = 1;
   std::string origin;
 
@@ -44,15 +46,21 @@ struct HeatBoundarySpec {
     constexpr std::string_view kCelsius = "temperatures are in °C, not in K";
     return take(
         field("set", &B::set, "vertex set of the surface").otherwise("`region`"),
-        field("region", &B::region, "name or number of a region whose vertices are held, such as a vessel's")
+        field("region", &B::region,
+              "name or number of a region, such as a vessel's: its vertices are held; with a coefficient or `vessel` "
+              "it is blood "
+              "and no tissue, and heat goes through its wall")
             .otherwise("`set`"),
         field("temperature", &B::temperature, "°C", between(-200, 200),
-              "temperature at which the vertices are held; with a coefficient that of what lies beyond the surface")
+              "temperature at which the vertices are held; with a coefficient that of what lies beyond the surface, or "
+              "of the blood")
             .keyed("temperature_C")
             .advise(kCelsius),
         field("flux", &B::flux, "W/m²", "heat through the surface, into the body above 0"),
         field("coefficient", &B::coefficient, "W/(m² K)", above(0),
               "heat goes through the surface by this times the difference of temperature")
+            .otherwise("held"),
+        field("vessel", &B::vessel, "in place of a coefficient: the vessel whose wall this is, and its flow")
             .otherwise("held"),
         field("times", &B::times, "s", at_least(0), "times of a table, ascending").otherwise("constant"),
         field("temperatures", &B::temperatures, "°C", between(-200, 200), "in place of `temperature_C`: at these times")
@@ -60,6 +68,9 @@ struct HeatBoundarySpec {
             .advise(kCelsius)
             .otherwise("constant"),
         field("fluxes", &B::fluxes, "W/m²", "in place of `flux_W_m2`: at these times").otherwise("constant"),
+        field("coefficients", &B::coefficients, "W/(m² K)", at_least(0),
+              "in place of `coefficient_W_m2_K`: at these times; 0: no flow")
+            .otherwise("constant"),
         field("cycles", &B::cycles, between(1, 1000), "how often the table is run through"),
         no_key("origin", &B::origin));
   }
@@ -111,11 +122,28 @@ struct HeatProbeSpec {
   }
 };
 
-/// Heat per volume of a region.
+/// Where the heat of a [[heat.power]] with a total arises: as exp(−r²/2a² − z²/2b²), r across and z along an axis.
+struct HeatPatternSpec {
+  Vec3d middle{}, axis{0.0, 0.0, 1.0};  ///< [m], of any length
+  double across = 0.005;                ///< a [m]
+  std::optional<double> along;          ///< b [m]; none: as across
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    using P = HeatPatternSpec;
+    return take(field("middle", &P::middle, "m", "its middle at rest").must(),
+                field("axis", &P::axis, "direction of an antenna, of any length").direction(),
+                field("across", &P::across, "mm", above(0), "distance from the axis at which it falls to 61 %").must(),
+                field("along", &P::along, "mm", above(0), "the same along the axis").otherwise("as `across_mm`"));
+  }
+};
+
+/// Heat per volume of a region, or a given power in a pattern.
 struct HeatPowerSpec {
-  std::string region;           ///< name or number; empty: the whole body
-  std::optional<double> power;  ///< [W/m³]
-  std::vector<double> times, powers;
+  std::string region;                  ///< name or number; empty: the whole body
+  std::optional<double> power, total;  ///< [W/m³], [W]
+  std::optional<HeatPatternSpec> pattern;
+  std::vector<double> times, powers, totals;
   int cycles = 1;
   std::string origin;
 
@@ -123,14 +151,60 @@ struct HeatPowerSpec {
   static constexpr auto fields(Take take) {
     using P = HeatPowerSpec;
     constexpr std::string_view kNoTissue = "more than that no tissue bears: 1e8 W/m³ boils it within three seconds";
-    return take(field("region", &P::region, "name or number of a region").otherwise("the whole body"),
-                field("power", &P::power, "W/m³", between(-1e8, 1e8), "heat per volume and time").advise(kNoTissue),
-                field("times", &P::times, "s", at_least(0), "times of a table, ascending").otherwise("constant"),
-                field("powers", &P::powers, "W/m³", between(-1e8, 1e8), "in place of `power_W_m3`: at these times")
-                    .advise(kNoTissue)
-                    .otherwise("constant"),
-                field("cycles", &P::cycles, between(1, 1000), "how often the table is run through"),
-                no_key("origin", &P::origin));
+    return take(
+        field("region", &P::region, "name or number of a region").otherwise("the whole body"),
+        field("power", &P::power, "W/m³", between(-1e8, 1e8), "heat per volume and time").advise(kNoTissue),
+        field("total", &P::total, "W", between(-1000, 1000),
+              "in its place: heat of all the region, evenly or by `pattern`, as what an antenna gives to tissue"),
+        field("pattern", &P::pattern, "where that heat arises: SAR of a microwave antenna as a bell")
+            .otherwise("evenly"),
+        field("times", &P::times, "s", at_least(0), "times of a table, ascending").otherwise("constant"),
+        field("powers", &P::powers, "W/m³", between(-1e8, 1e8), "in place of `power_W_m3`: at these times")
+            .advise(kNoTissue)
+            .otherwise("constant"),
+        field("totals", &P::totals, "W", between(-1000, 1000), "in place of `total_W`: at these times")
+            .otherwise("constant"),
+        field("cycles", &P::cycles, between(1, 1000), "how often the table is run through"),
+        no_key("origin", &P::origin));
+  }
+};
+
+/// Radio frequency: an electrode, a set or a needle, against a ground.
+struct HeatRadioSpec {
+  std::string name = "radio";
+  std::string set;                       ///< the electrode; or a needle:
+  std::optional<Vec3d> from, to;         ///< its tip, and a point up its shaft [m]
+  std::optional<double> active_length;   ///< from the tip [m]; none: all of it
+  double radius = 0.0;                   ///< [m]
+  std::string ground;                    ///< vertex set
+  std::optional<double> voltage, power;  ///< effective [V], [W]
+  std::vector<double> times, voltages, powers;
+  int cycles = 1;
+  std::string origin;
+
+  template <class Take>
+  static constexpr auto fields(Take take) {
+    using R = HeatRadioSpec;
+    return take(
+        field("name", &R::name, "name, of its columns of heat.csv: `NAME_power_W`, `NAME_voltage_V`, `NAME_ohm`"),
+        field("set", &R::set, "vertex set that is the electrode").otherwise("a needle"),
+        field("from", &R::from, "m", "in its place: tip of a needle").otherwise(""),
+        field("to", &R::to, "m", "a point up its shaft").otherwise(""),
+        field("active_length", &R::active_length, "mm", above(0),
+              "length from the tip that is bare; the rest is insulated")
+            .otherwise("up to `to_m`"),
+        field("radius", &R::radius, "mm", between(0, 20),
+              "of the needle; where the mesh is coarser, its cells are its width"),
+        field("ground", &R::ground, "vertex set of the other electrode, at 0 V").must(),
+        field("voltage", &R::voltage, "V", between(0, 1000), "between the electrodes, effective value"),
+        field("power", &R::power, "W", between(0, 1000), "in its place: heat of the current in the whole body"),
+        field("times", &R::times, "s", at_least(0), "times of a table, ascending").otherwise("constant"),
+        field("voltages", &R::voltages, "V", between(0, 1000), "in place of `voltage_V`: at these times")
+            .otherwise("constant"),
+        field("powers", &R::powers, "W", between(0, 1000), "in place of `power_W`: at these times")
+            .otherwise("constant"),
+        field("cycles", &R::cycles, between(1, 1000), "how often the table is run through"),
+        no_key("origin", &R::origin));
   }
 };
 
@@ -232,6 +306,7 @@ struct HeatSpec {
   std::vector<HeatBoundarySpec> boundaries;
   std::vector<HeatProbeSpec> probes;
   std::vector<HeatPowerSpec> powers;
+  std::vector<HeatRadioSpec> radios;
   std::vector<HeatSensorSpec> sensors;
   std::vector<HeatFrontSpec> fronts;
   std::vector<HeatIsothermSpec> isotherms;

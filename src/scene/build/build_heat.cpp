@@ -8,11 +8,13 @@
 
 #include "base/nearest.h"
 #include "glisson/scene/heat_run.h"
+#include "scene/build/heat_sources.h"
 #include "scene/build/select.h"
 
 namespace glisson {
 namespace {
 
+using scene::course;
 using scene::region_number;
 
 [[noreturn]] void fail_heat(const Variant& variant, const std::string& origin, const std::string& what) {
@@ -56,7 +58,8 @@ int region_with_tets(const Variant& variant, const std::string& origin, const Te
   fail_heat(variant, origin, "the body has no region \"" + name + "\"; it has: " + regions_text(mesh));
 }
 
-std::map<int, ThermalTissue> thermal_tissues(const Variant& variant, const TetMesh& mesh) {
+std::map<int, ThermalTissue> thermal_tissues(const Variant& variant, const TetMesh& mesh,
+                                             const std::vector<int>& hollow) {
   std::map<int, ThermalTissue> tissues;
   const HeatSpec& heat = heat_of(variant);
   for (const HeatTissueSpec& x : heat.tissues) {
@@ -66,7 +69,7 @@ std::map<int, ThermalTissue> thermal_tissues(const Variant& variant, const TetMe
       std::find_if(heat.tissues.begin(), heat.tissues.end(), [](const auto& x) { return x.region.empty(); });
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
     const int region = mesh.region_of(t);
-    if (tissues.count(region) > 0) continue;
+    if (tissues.count(region) > 0 || std::find(hollow.begin(), hollow.end(), region) != hollow.end()) continue;
     if (rest == heat.tissues.end()) {
       fail_heat(
           variant, heat.origin,
@@ -78,17 +81,20 @@ std::map<int, ThermalTissue> thermal_tissues(const Variant& variant, const TetMe
   return tissues;
 }
 
-HeatSimulation heat_simulation(const Variant& variant, TetMesh mesh) {
-  const std::map<int, ThermalTissue> tissues = thermal_tissues(variant, mesh);
-  return placed(variant, heat_of(variant).origin,
-                [&] { return HeatSimulation(std::move(mesh), tissues, variant.heat->options); });
+/// Regions that blood flows through. @throws SceneError
+std::vector<int> hollow_regions(const Variant& variant, const TetMesh& mesh) {
+  std::vector<int> hollow;
+  for (const HeatBoundarySpec& x : heat_of(variant).boundaries) {
+    if (scene::is_vessel(x)) hollow.push_back(region_with_tets(variant, x.origin, mesh, x.region));
+  }
+  return hollow;
 }
 
-/// A table where its values are given, else a constant; none where neither is.
-TimeFunction<double> course(const std::vector<double>& times, const std::vector<double>& values,
-                            const std::optional<double>& constant, int cycles) {
-  if (!values.empty()) return table_course(times, values, cycles);
-  return constant ? table_course({}, {*constant}) : TimeFunction<double>();
+HeatSimulation heat_simulation(const Variant& variant, TetMesh mesh) {
+  HeatOptions options = heat_of(variant).options;
+  options.hollow = hollow_regions(variant, mesh);
+  const std::map<int, ThermalTissue> tissues = thermal_tissues(variant, mesh, options.hollow);
+  return placed(variant, heat_of(variant).origin, [&] { return HeatSimulation(std::move(mesh), tissues, options); });
 }
 
 std::vector<std::uint32_t> vertices_of_region(const TetMesh& mesh, int region) {
@@ -133,10 +139,13 @@ void BuiltHeat::add_sources(const Variant& variant) {
   for (const HeatBoundarySpec& x : heat_of(variant).boundaries) {
     placed(variant, x.origin, [&] {
       const auto temperature = course(x.times, x.temperatures, x.temperature, x.cycles);
-      if (!x.region.empty())
+      const TimeFunction<double> coefficient = scene::wall_coefficient_of(x);
+      if (scene::is_vessel(x))
+        simulation.add_vessel(region_number(mesh, x.region), coefficient, temperature);
+      else if (!x.region.empty())
         simulation.hold(vertices_of_region(mesh, region_with_tets(variant, x.origin, mesh, x.region)), temperature);
-      else if (x.coefficient)
-        simulation.add_convection(x.set, *x.coefficient, temperature);
+      else if (coefficient)
+        simulation.add_convection(x.set, coefficient, temperature);
       else if (temperature)
         simulation.hold(x.set, temperature);
       else
@@ -160,11 +169,25 @@ void BuiltHeat::add_sources(const Variant& variant) {
     });
   }
   for (const HeatPowerSpec& x : heat_of(variant).powers) {
-    std::set<int> regions;
-    if (!x.region.empty()) regions.insert(region_with_tets(variant, x.origin, mesh, x.region));
-    for (std::size_t t = 0; x.region.empty() && t < mesh.tets.size(); ++t) regions.insert(mesh.region_of(t));
-    for (const int region : regions) simulation.add_source(region, course(x.times, x.powers, x.power, x.cycles));
+    std::optional<int> only;
+    if (!x.region.empty()) only = region_with_tets(variant, x.origin, mesh, x.region);
+    placed(variant, x.origin, [&] {
+      const bool by_total = x.total || !x.totals.empty();
+      if (by_total) {
+        simulation.add_source(scene::pattern_of(x, mesh, only, hollow_regions(variant, mesh)),
+                              course(x.times, x.totals, x.total, x.cycles));
+        return;
+      }
+      const std::vector<int> hollow = hollow_regions(variant, mesh);
+      std::set<int> regions;
+      if (only) regions.insert(*only);
+      for (std::size_t t = 0; !only && t < mesh.tets.size(); ++t) regions.insert(mesh.region_of(t));
+      if (!only) std::erase_if(regions, [&](int region) { return std::ranges::count(hollow, region) > 0; });
+      for (const int region : regions) simulation.add_source(region, course(x.times, x.powers, x.power, x.cycles));
+    });
   }
+  for (const HeatRadioSpec& x : heat_of(variant).radios)
+    placed(variant, x.origin, [&] { simulation.add_radio(scene::radio_of(x, mesh)); });
 }
 
 namespace {
@@ -236,6 +259,9 @@ void BuiltHeat::add_volumes(const Variant& variant) {
     for (const char* what : {"_volume_m3", "_extent_x_m", "_extent_y_m", "_extent_z_m"}) column(x.name + what);
     if (x.plane) column(x.name + "_area_m2"), column(x.name + "_width_m");
   }
+  for (const HeatRadioSpec& x : heat_of(variant).radios) {
+    for (const char* what : {"_power_W", "_voltage_V", "_ohm"}) column(x.name + what);
+  }
   for (const char* name : {"stored_J", "held_J", "surface_J", "blood_J", "metabolism_J", "sources_J", "removed_J",
                            "imbalance_J", "limited_share"})
     column(name);
@@ -298,6 +324,7 @@ HeatSample BuiltHeat::read() const {
     row.push_back(x.spec.above ? colder - x.line->length_below(t, *x.spec.above) : colder);
   }
   read_isotherms(t, row);
+  for (const RadioState& x : simulation.state().radio) row.insert(row.end(), {x.power, x.voltage, x.resistance});
   const HeatLedger l = simulation.ledger();
   row.insert(row.end(), {l.stored, l.held, l.surface, l.blood, l.metabolism, l.sources, l.removed, l.imbalance(),
                          simulation.state().limited_share});

@@ -64,7 +64,10 @@ std::string scene_reference_markdown() {
   text += section_text(tissue_death_section(), "`[heat.tissue.death]`");
   text += section_text(heat_boundary_section(), "`[[heat.boundary]]`");
   text += section_text(heat_probe_section(), "`[[heat.probe]]`");
+  text += section_text(heat_vessel_section(), "`[heat.boundary.vessel]`");
   text += section_text(heat_power_section(), "`[[heat.power]]`");
+  text += section_text(heat_pattern_section(), "`[heat.power.pattern]`");
+  text += section_text(heat_radio_section(), "`[[heat.radio]]`");
   text += section_text(heat_sensor_section(), "`[[heat.sensor]]`");
   text += section_text(heat_front_section(), "`[[heat.front]]`");
   text += section_text(heat_isotherm_section(), "`[[heat.isotherm]]`");

@@ -64,6 +64,16 @@ void check_name(const Node& table, const std::string& value, const Place& place)
   if (const Node* name = table.find("name"); name && !unfit.empty()) place.complain(*name, "name", unfit);
 }
 
+/// Flow in a vessel that the law of its wall does not know is named here, with its place.
+void check_wall(const HeatBoundarySpec& x, const Node& table, const Place& place) {
+  if (!x.vessel) return;
+  try {
+    wall_coefficient(*x.vessel);
+  } catch (const std::invalid_argument& error) {
+    place.complain(*table.find("vessel"), "vessel", error.what());
+  }
+}
+
 /// Without a preset every property has to be there: a figure that nobody chose looks like one that somebody measured.
 void check_complete(const Node& table, const Place& place) {
   if (table.find("preset")) return;
@@ -92,6 +102,7 @@ void check_twice(const List& list, const char* key, const Node& table, const Pla
 void check_heat(HeatSpec& heat, const Node& table, const Place& place) {
   heat.origin = place.text();
   check_twice(heat.probes, "probe", table, place);
+  check_twice(heat.radios, "radio", table, place);
   check_twice(heat.sensors, "sensor", table, place);
   check_twice(heat.fronts, "front", table, place);
   check_twice(heat.isotherms, "isotherm", table, place);
@@ -145,15 +156,18 @@ const SectionSpec& heat_boundary_section() {
         "A part of the surface, or a region, that is held at a temperature; a surface that heat "
         "goes through. Where there is none, the surface is insulated.");
     s.fields();
-    s.spec().exclusions = {{{{"set"}, {"region"}}, true},
-                           {{{"temperature_C"}, {"temperatures_C"}, {"flux_W_m2"}, {"fluxes_W_m2"}}, true},
-                           {{{"coefficient_W_m2_K"}, {"flux_W_m2"}, {"fluxes_W_m2"}, {"region"}}, false}};
+    s.spec().exclusions = {
+        {{{"set"}, {"region"}}, true},
+        {{{"temperature_C"}, {"temperatures_C"}, {"flux_W_m2"}, {"fluxes_W_m2"}}, true},
+        {{{"coefficient_W_m2_K"}, {"coefficients_W_m2_K"}, {"vessel"}, {"flux_W_m2"}, {"fluxes_W_m2"}}, false}};
     s.finish([](HeatBoundarySpec& x, const Node& table, const Place& place) {
       x.origin = place.text();
-      check_table(table, x.times, {"temperatures_C", "fluxes_W_m2"}, place);
+      check_table(table, x.times, {"temperatures_C", "fluxes_W_m2", "coefficients_W_m2_K"}, place);
       if (const Node* region = table.find("region");
           region && !table.find("temperature_C") && !table.find("temperatures_C"))
-        place.complain(*region, "region", "can only be held; give `temperature_C`, or a `[[heat.power]]` for its heat");
+        place.complain(*region, "region",
+                       "can only be held, or be blood; give `temperature_C`, or a `[[heat.power]]` for its heat");
+      check_wall(x, table, place);
     });
     return s.spec();
   }();
@@ -191,14 +205,52 @@ const SectionSpec& heat_probe_section() {
   return section;
 }
 
+const SectionSpec& heat_vessel_section() {
+  static const SectionSpec section = described<VesselWall>(
+      "vessel",
+      "A vessel with laminar flow: its wall has the coefficient Nu k/D of the VDI Heat Atlas (docs/heat.md).");
+  return section;
+}
+
+const SectionSpec& heat_pattern_section() {
+  static const SectionSpec section = described<HeatPatternSpec>(
+      "pattern", "A bell around a middle, exp(−r²/2a² − z²/2b²), scaled to the power given.");
+  return section;
+}
+
 const SectionSpec& heat_power_section() {
   static const SectionSpec section = [] {
-    Section<HeatPowerSpec> s("heat.power", "Heat per volume of a region or of the whole body.");
+    Section<HeatPowerSpec> s(
+        "heat.power",
+        "Heat per volume of a region or of the whole body, or a power that is spread there by a pattern.");
     s.fields();
-    s.spec().exclusions = {{{{"power_W_m3"}, {"powers_W_m3"}}, true}};
+    s.spec().exclusions = {{{{"power_W_m3"}, {"powers_W_m3"}, {"total_W"}, {"totals_W"}}, true},
+                           {{{"pattern"}, {"power_W_m3"}, {"powers_W_m3"}}, false}};
     s.finish([](HeatPowerSpec& x, const Node& table, const Place& place) {
       x.origin = place.text();
-      check_table(table, x.times, {"powers_W_m3"}, place);
+      check_table(table, x.times, {"powers_W_m3", "totals_W"}, place);
+    });
+    return s.spec();
+  }();
+  return section;
+}
+
+const SectionSpec& heat_radio_section() {
+  static const SectionSpec section = [] {
+    Section<HeatRadioSpec> s(
+        "heat.radio",
+        "Radio frequency: current from an electrode to a ground, which heats tissue by its electric "
+        "conductivity at the temperature that it has.");
+    s.fields();
+    s.spec().exclusions = {{{{"set"}, {"from_m"}}, true},
+                           {{{"voltage_V"}, {"voltages_V"}, {"power_W"}, {"powers_W"}}, true}};
+    s.finish([](HeatRadioSpec& x, const Node& table, const Place& place) {
+      x.origin = place.text();
+      check_name(table, x.name, place);
+      check_table(table, x.times, {"voltages_V", "powers_W"}, place);
+      check_pair(table, {"from_m"}, {"to_m"}, "needs `to_m` with it, a point up the shaft", place);
+      check_pair(table, {"to_m", "active_length_mm", "radius_mm"}, {"from_m"},
+                 "needs `from_m` with it, the needle's tip", place);
     });
     return s.spec();
   }();
@@ -294,6 +346,7 @@ const SectionSpec& heat_section() {
     s.tables("boundary", heat_boundary_section(), &HeatSpec::boundaries, "what the surface, or a region, is held at");
     s.tables("probe", heat_probe_section(), &HeatSpec::probes, "lines that give heat");
     s.tables("power", heat_power_section(), &HeatSpec::powers, "heat of regions");
+    s.tables("radio", heat_radio_section(), &HeatSpec::radios, "currents that heat");
     s.tables("sensor", heat_sensor_section(), &HeatSpec::sensors, "temperatures that are read");
     s.tables("front", heat_front_section(), &HeatSpec::fronts, "fronts along lines");
     s.tables("isotherm", heat_isotherm_section(), &HeatSpec::isotherms, "volumes below isotherms");

@@ -52,6 +52,9 @@ const SectionSpec& tissue_death_section();       ///< fills TissueDeath
 const SectionSpec& heat_boundary_section();      ///< fills HeatBoundarySpec
 const SectionSpec& heat_probe_section();         ///< fills HeatProbeSpec
 const SectionSpec& heat_power_section();         ///< fills HeatPowerSpec
+const SectionSpec& heat_pattern_section();       ///< fills HeatPatternSpec
+const SectionSpec& heat_vessel_section();        ///< fills VesselWall
+const SectionSpec& heat_radio_section();         ///< fills HeatRadioSpec
 const SectionSpec& heat_sensor_section();        ///< fills HeatSensorSpec
 const SectionSpec& heat_front_section();         ///< fills HeatFrontSpec
 const SectionSpec& heat_isotherm_section();      ///< fills HeatIsothermSpec
@@ -84,6 +87,8 @@ inline const SectionSpec& section_of(std::type_identity<MembraneProcess>) { retu
 inline const SectionSpec& section_of(std::type_identity<ShaftFriction>) { return shaft_friction_section(); }
 inline const SectionSpec& section_of(std::type_identity<TissueDeath>) { return tissue_death_section(); }
 inline const SectionSpec& section_of(std::type_identity<HeatPlaneSpec>) { return heat_plane_section(); }
+inline const SectionSpec& section_of(std::type_identity<HeatPatternSpec>) { return heat_pattern_section(); }
+inline const SectionSpec& section_of(std::type_identity<VesselWall>) { return heat_vessel_section(); }
 inline const SectionSpec& section_of(std::type_identity<StrokesSpec::One>) { return stroke_section(); }
 
 }  // namespace glisson::scene
