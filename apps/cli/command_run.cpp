@@ -27,7 +27,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kRunFooter =
     "Writes DIR/<variant>/{forces.csv, frames.pvd, frames/, view.jsonl, summary.json} and DIR/report.html.\n"
-    "A scene of heat writes temperature.csv and heat.csv in place of forces.csv and view.jsonl.\n"
+    "A scene of heat writes temperature.csv and heat.csv in place of forces.csv and view.jsonl, one with [heat.ice] "
+    "both.\n"
     "ParaView opens frames.pvd, `glisson view DIR` all of it.\n"
     "A former run in DIR is replaced; a folder that holds anything else is refused.\n"
     "\n"
@@ -68,7 +69,7 @@ int run(const RunOptions& options) {
   const fs::path folder = options.out.empty() ? fs::path("out") / scene.file.stem() : fs::path(options.out);
   if (!options.quiet && !options.scene.mesh.empty()) say("{}\n", scene.notes.back());
   for (const Variant& v : scene.variants) {
-    if (const std::string note = v.heat ? "" : branches_note(v); !options.quiet && !note.empty())
+    if (const std::string note = is_heat_alone(v) ? "" : branches_note(v); !options.quiet && !note.empty())
       say("{}: {}\n", v.name, note);
   }
   MeshCache meshes(options.quiet);

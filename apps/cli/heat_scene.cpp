@@ -108,7 +108,7 @@ std::string counted(std::size_t count, const char* what) {
 
 }  // namespace
 
-bool is_heat_scene(const Scene& scene) { return scene.variants.front().heat.has_value(); }
+bool is_heat_scene(const Scene& scene) { return is_heat_alone(scene.variants.front()); }
 
 int run_heat_scene(const Scene& scene, const std::filesystem::path& folder, int threads, bool quiet,
                    const MeshLoader& load) {

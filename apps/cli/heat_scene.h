@@ -7,7 +7,7 @@
 
 namespace glisson::app {
 
-/// Whether it is one of heat.
+/// Whether it is one of heat alone.
 bool is_heat_scene(const Scene& scene);
 
 /// Runs its variants, writes their files and the report into a folder that is ready, and says how they ended. @return the exit code

@@ -148,6 +148,7 @@ void bind_heat_types(nb::module_& m) {
       .read("blood", &HeatLedger::blood)
       .read("metabolism", &HeatLedger::metabolism)
       .read("sources", &HeatLedger::sources)
+      .read("removed", &HeatLedger::removed)
       .def_prop_ro("imbalance", &HeatLedger::imbalance, "Left over in the balance [J]");
   Results<IsothermExtent>(m, "IsothermExtent")
       .read("volume", &IsothermExtent::volume)

@@ -12,6 +12,7 @@
 #include "glisson/io.h"
 #include "material/strain.h"
 #include "report/field_values.h"
+#include "report/heat_recorder.h"
 #include "report/output_file.h"
 #include "report/tool_surface.h"
 
@@ -109,6 +110,13 @@ void FrameSeries::add(const Simulation& simulation, const TetFields& fields) {
     frame.at_vertices.push_back(
         {.name = "contact_pressure_Pa", .components = 1, .values = std::move(contact.pressure)});
     frame.at_vertices.push_back(vector_field("contact_traction_Pa", contact.traction));
+  }
+  if (heat_) {
+    for (Field& field : heat_fields(heat_->heat().simulation, isotherms_))
+      frame.at_vertices.push_back(std::move(field));
+    Field ice{.name = "ice", .components = 1, .values = {}};
+    for (std::uint32_t t = 0; t < frame.mesh.tets.size(); ++t) ice.values.push_back(heat_->ice()->share(t));
+    frame.at_tets.push_back(std::move(ice));
   }
   frame.at_tets.push_back(strain_field(simulation.mesh(), simulation.displacement()));
   frame.at_tets.push_back({.name = "q", .components = 1, .values = fields.q});

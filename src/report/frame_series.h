@@ -13,6 +13,7 @@
 
 #include "glisson/instruments/instrument.h"
 #include "glisson/io.h"
+#include "glisson/scene/heat_run.h"
 #include "glisson/simulation/simulation.h"
 #include "report/tool_surface.h"
 
@@ -39,6 +40,10 @@ class FrameSeries {
   void finish();
   /// The instruments whose surfaces are written.
   void set_instruments(std::vector<std::shared_ptr<Instrument>> instruments) { instruments_ = std::move(instruments); }
+  /// The heat whose temperatures are written at the vertices, and the ice of tets.
+  void set_heat(std::shared_ptr<HeatCoupling> heat, std::vector<double> isotherms) {
+    heat_ = std::move(heat), isotherms_ = std::move(isotherms);
+  }
 
  private:
   using Files = std::vector<std::pair<double, std::filesystem::path>>;  ///< time [s], file relative to the .pvd
@@ -59,6 +64,8 @@ class FrameSeries {
   std::filesystem::path folder_;
   bool linear_;
   std::vector<std::shared_ptr<Instrument>> instruments_;
+  std::shared_ptr<HeatCoupling> heat_;  ///< null: none
+  std::vector<double> isotherms_;
   std::map<std::string, Files> tools_;  ///< by name
   Files frames_;
   std::future<void> writing_;  ///< which has tools_ and frames_ until it is done

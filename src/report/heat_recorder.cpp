@@ -16,7 +16,9 @@ namespace {
 
 constexpr double kBoils = 100.0;  // [°C]
 
-std::vector<Field> vertex_fields_of(const HeatSimulation& s, const std::vector<double>& isotherms) {
+}  // namespace
+
+std::vector<Field> heat_fields(const HeatSimulation& s, const std::vector<double>& isotherms) {
   const auto field = [](std::string name, auto begin, auto end) {
     return Field{.name = std::move(name), .components = 1, .values = {begin, end}};
   };
@@ -34,8 +36,6 @@ std::vector<Field> vertex_fields_of(const HeatSimulation& s, const std::vector<d
     fields.push_back(field(fmt::format("below_{:g}_C_s", isotherms[k]), h.below[k].begin(), h.below[k].end()));
   return fields;
 }
-
-}  // namespace
 
 std::string heat_trouble_text(const HeatRunSummary& s) {
   return s.trouble.empty() ? "" : fmt::format("stopped at {:.6g} s: {}", s.time_s, s.trouble);
@@ -82,7 +82,7 @@ void HeatRecorder::on_frame(const HeatSimulation& s) {
     TetMesh mesh = s.mesh();
     mesh.regions.resize(mesh.tets.size(), 0);
     try {
-      write_vtu(options_.folder / file, mesh, {}, vertex_fields_of(s, variant_.heat->options.isotherms), {});
+      write_vtu(options_.folder / file, mesh, {}, heat_fields(s, variant_.heat->options.isotherms), {});
       frames_.emplace_back(s.time(), file);
       write_pvd(options_.folder / "frames.pvd", frames_);
     } catch (const std::runtime_error& error) {
@@ -96,10 +96,20 @@ void HeatRecorder::on_end(const HeatRunSummary& summary) {
   guarded_([&] { write_whole(options_.folder / "summary.json", json_text(summary_json(), 2) + "\n"); });
 }
 
-const std::vector<double>& HeatRecorder::column(const std::string& name) const {
+const std::vector<double>* HeatRecorder::find_column(const std::string& name) const {
   const auto found = std::find(columns_.begin(), columns_.end(), name);
-  if (found == columns_.end()) throw std::out_of_range("temperature.csv and heat.csv have no column \"" + name + "\"");
-  return data_[static_cast<std::size_t>(found - columns_.begin())];
+  return found == columns_.end() ? nullptr : &data_[static_cast<std::size_t>(found - columns_.begin())];
+}
+
+const std::vector<double>& HeatRecorder::column(const std::string& name) const {
+  if (const std::vector<double>* found = find_column(name)) return *found;
+  throw std::out_of_range("temperature.csv and heat.csv have no column \"" + name + "\"");
+}
+
+void HeatRecorder::add_last(nlohmann::ordered_json& json) const {
+  for (std::size_t i = 1; i < columns_.size(); ++i) {
+    if (!data_[i].empty()) json[columns_[i]] = data_[i].back();
+  }
 }
 
 nlohmann::ordered_json HeatRecorder::summary_json() const {
@@ -119,9 +129,7 @@ nlohmann::ordered_json HeatRecorder::summary_json() const {
   json["lowest_of_all_C"] = s.lowest_C;
   json["highest_of_all_C"] = s.highest_C;
   if (const std::string warning = boiling_warning(s); !warning.empty()) json["boiling_warning"] = warning;
-  for (std::size_t i = 1; i < columns_.size(); ++i) {
-    if (!data_[i].empty()) json[columns_[i]] = data_[i].back();
-  }
+  add_last(json);
   json["limited_share_most"] = s.limited_share_most;
   json["threads"] = options_.threads;
   json["state_hash"] = fmt::format("{:016x}", s.state_hash);

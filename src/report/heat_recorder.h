@@ -1,4 +1,4 @@
-// heat_recorder.h — writes down one run of heat, and keeps what the report page will show of it.
+// heat_recorder.h — writes down one run of heat, or the tables of one beside mechanics, and keeps what the report page will show of it.
 //
 //   on_sample ─▶ temperature.csv, heat.csv        on_frame ─▶ frames.pvd, frames/*.vtu        on_end ─▶ summary.json
 //
@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "glisson/io.h"
 #include "glisson/scene/heat_run.h"
 #include "report/variant_recorder.h"
 
@@ -36,6 +37,9 @@ class HeatRecorder : public HeatObserver {
   const HeatRunSummary& summary() const { return summary_; }
   /// One column of temperature.csv or heat.csv by name. @throws std::out_of_range naming it
   const std::vector<double>& column(const std::string& name) const;
+  const std::vector<double>* find_column(const std::string& name) const;  ///< null where there is none
+  /// Adds the last value of each column but the time.
+  void add_last(nlohmann::ordered_json& json) const;
   /// One CheckData for each of its checks. @param label  of the variant; may be empty
   nlohmann::json checks(const std::string& label) const;
   /// VariantData of web/src/report_data.ts: `forces` has the columns of both tables.
@@ -56,6 +60,9 @@ class HeatRecorder : public HeatObserver {
   std::vector<std::pair<double, std::filesystem::path>> frames_;
   HeatRunSummary summary_;
 };
+
+/// What a frame shows of heat at the vertices: temperature_C, frozen, coldest_C … below_T_C_s of each isotherm [°C].
+std::vector<Field> heat_fields(const HeatSimulation& simulation, const std::vector<double>& isotherms);
 
 /// A sentence on an end that is the numbers' doing, and one on heat beyond what the model holds; empty where there is none.
 std::string heat_trouble_text(const HeatRunSummary& summary);

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "glisson/version.h"
+#include "report/heat_recorder.h"
 #include "report/json_text.h"
 #include "report/law_data.h"
 #include "report/scene_checks.h"
@@ -105,6 +106,10 @@ nlohmann::json scene_json(const Scene& scene, const std::vector<const VariantRec
     if (!chart.value.column.empty()) charts.back()["map"] = map_json(chart, variants);
   }
   for (const nlohmann::json& chart : extras.charts) charts.push_back(chart);
+  for (const VariantRecorder* v : variants) {
+    if (v->heat() == nullptr) continue;
+    for (const nlohmann::json& chart : v->heat()->charts(variants.size() == 1)) charts.push_back(chart);
+  }
   nlohmann::json page = scene_json(scene, std::move(list), std::move(charts), extras);
   page["advice"] = scene_advice(scene, variants);
   return page;

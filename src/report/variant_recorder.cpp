@@ -5,7 +5,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "glisson/scene/heat_run.h"
 #include "report/csv_table.h"
+#include "report/heat_recorder.h"
 #include "report/json_text.h"
 #include "report/law_data.h"
 #include "report/summary_json.h"
@@ -13,7 +15,8 @@
 namespace glisson {
 
 VariantRecorder::VariantRecorder(Variant variant, RecorderOptions options, std::atomic<bool>& stop)
-    : variant_(std::move(variant)), options_(std::move(options)), guarded_(stop) {}
+    : variant_(std::move(variant)), options_(std::move(options)), guarded_(stop), stop_(stop) {}
+VariantRecorder::~VariantRecorder() = default;
 
 void VariantRecorder::on_start(const Variant&, const Simulation& simulation) {
   advice_ = advise_at_rest(variant_, simulation);
@@ -49,6 +52,13 @@ void VariantRecorder::on_built(const BuiltVariant& built) {
     probe_columns_.insert(probe_columns_.end(), built.probes.columns().begin(), built.probes.columns().end());
     probe_data_.resize(probe_columns_.size());
   }
+  if (built.heat) {
+    coupling_ = built.heat;
+    heat_ = std::make_unique<HeatRecorder>(variant_, options_, stop_);
+    heat_->on_start(variant_, coupling_->heat());
+    heat_->on_sample(coupling_->heat().read());
+    if (frames_) frames_->set_heat(coupling_, variant_.heat->options.isotherms);
+  }
   guarded_([&] {
     files_.emplace_back(options_.folder / "forces.csv");
     files_.back().write(csv_line(table_->columns()));
@@ -78,6 +88,8 @@ void VariantRecorder::on_event(const RunEvent& event) {
 
 void VariantRecorder::on_sample(const Sample& sample) {
   record_probes(sample);
+  if (heat_ && coupling_->heat().simulation.time() > heat_->column("time_s").back())
+    heat_->on_sample(coupling_->heat().read());
   const std::vector<double> row = table_->row(sample);
   for (std::size_t i = 0; i < row.size(); ++i) data_[i].push_back(row[i]);
   guarded_([&] { files_.front().write(csv_line(row)); });
@@ -108,7 +120,7 @@ void VariantRecorder::on_frame(const Simulation& simulation) {
 void VariantRecorder::on_end(const RunSummary& summary) {
   summary_ = summary;
   rejected_ = rejected_poses(instruments_);
-  instruments_.clear();
+  instruments_.clear(), coupling_ = nullptr;
   guarded_([&] {
     if (frames_) frames_->finish();
     write_whole(options_.folder / "summary.json", json_text(summary_with_tips(), 2) + "\n");
@@ -122,8 +134,11 @@ const std::vector<double>& VariantRecorder::column(const std::string& name) cons
   };
   if (const auto* values = found_in(table_->columns(), data_)) return *values;
   if (const auto* values = found_in(probe_columns_, probe_data_)) return *values;
-  throw std::out_of_range("forces.csv" + std::string(probe_columns_.empty() ? " has" : " and probes.csv have") +
-                          " no column \"" + name + "\"");
+  if (const auto* values = heat_ ? heat_->find_column(name) : nullptr) return *values;
+  const char* files = heat_                    ? ", probes.csv, temperature.csv and heat.csv have"
+                      : probe_columns_.empty() ? " has"
+                                               : " and probes.csv have";
+  throw std::out_of_range("forces.csv" + std::string(files) + " no column \"" + name + "\"");
 }
 
 std::vector<TipDistance> VariantRecorder::tips() const {
@@ -148,6 +163,10 @@ nlohmann::ordered_json VariantRecorder::summary_with_tips() const {
     json[name + "along_m"] = tip.along;
     json[name + "across_m"] = tip.across;
     json[name + "distance_least_m"] = tip.least;
+  }
+  if (heat_) {
+    json["energy_changed_J"] = summary_.energies.changed;
+    heat_->add_last(json);
   }
   json["checks"] = checks_json(options_.checks, summary_.end == RunSummary::End::finished,
                                [this](const std::string& name) -> const std::vector<double>& { return column(name); });

@@ -1,6 +1,7 @@
 // variant_recorder.h — writes down one variant as it runs, and keeps what the report page will show of it.
 //
-//   on_sample ─▶ forces.csv, forces_<name>.csv, probes.csv          on_end ─▶ summary.json
+//   on_sample ─▶ forces.csv, forces_<name>.csv, probes.csv,         on_end ─▶ summary.json
+//                temperature.csv and heat.csv with [heat.ice]
 //   on_event  ─▶ events.csv, where there are instruments
 //   on_frame  ─▶ frames.pvd, frames/*.vtu, view.jsonl, surface with instruments
 //
@@ -28,6 +29,8 @@
 
 namespace glisson {
 
+class HeatRecorder;
+
 struct RecorderOptions {
   std::filesystem::path folder;            ///< of the variant; made at the start, replaced files are gone by then
   std::string scene;                       ///< name of the scene, for the summary
@@ -47,6 +50,7 @@ class VariantRecorder : public RunObserver {
  public:
   /// @param stop  set when the disk refuses
   VariantRecorder(Variant variant, RecorderOptions options, std::atomic<bool>& stop);
+  ~VariantRecorder() override;
 
   void on_start(const Variant& variant, const Simulation& simulation) override;
   void on_built(const BuiltVariant& built) override;
@@ -69,7 +73,9 @@ class VariantRecorder : public RunObserver {
   /// Columns of forces.csv and their values, column by column.
   const std::vector<std::string>& columns() const { return table_->columns(); }
   const std::vector<std::vector<double>>& data() const { return data_; }
-  /// One column of forces.csv or probes.csv by name. @throws std::out_of_range naming it
+  /// Tables of heat beside the mechanics; null: none.
+  const HeatRecorder* heat() const { return heat_.get(); }
+  /// One column of forces.csv, probes.csv, temperature.csv or heat.csv by name. @throws std::out_of_range naming it
   const std::vector<double>& column(const std::string& name) const;
   /// Distances of tips at the end, of the probes that name one; none of a run without samples.
   std::vector<TipDistance> tips() const;
@@ -99,6 +105,9 @@ class VariantRecorder : public RunObserver {
   std::vector<std::string> probe_columns_;
   std::vector<std::vector<double>> probe_data_;
   std::vector<std::shared_ptr<Instrument>> instruments_;
+  std::shared_ptr<HeatCoupling> coupling_;
+  std::unique_ptr<HeatRecorder> heat_;
+  std::atomic<bool>& stop_;
   RunSummary summary_;
   std::vector<Advice> advice_;
   std::uint64_t rejected_ = 0;

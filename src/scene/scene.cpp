@@ -55,13 +55,14 @@ void check_sets(const Variant& variant, const Node& experiment, Problems& proble
   }
 }
 
-/// What a scene of heat has no use for yet, and sets that its boundaries name and are not there.
-void check_heat_alone(const Variant& variant, const Node& experiment, Problems& problems) {
+/// What a scene of heat alone has no use for.
+void check_heat_alone(const Node& experiment, Problems& problems) {
   for (const char* key : {"tissue", "motion", "fixed", "load", "tool", "instrument", "container", "capsule", "probe"}) {
     if (const Node* given = experiment.find(key))
       problems.add(
           given->where, key,
-          "belongs to mechanics, and a scene with [heat] is one of heat alone so far; leave it out, or [heat]");
+          "belongs to mechanics, and a scene with [heat] is one of heat alone; leave it out, or give [heat.ice], with "
+          "which the body moves and freezes");
   }
   const Node* regions = experiment.find("region");
   for (std::size_t i = 0; regions && i < regions->array()->size(); ++i) {
@@ -76,6 +77,18 @@ void check_heat_alone(const Variant& variant, const Node& experiment, Problems& 
       problems.add(given->where, std::string("output.") + key,
                    "belongs to mechanics; lines of temperature.csv are `heat.sample_every_s` apart");
   }
+}
+
+/// A second end of a run beside that of heat.
+void check_one_end(const Node& experiment, Problems& problems) {
+  const Node* motion = experiment.find("motion");
+  const Node* given = motion ? motion->find("duration_s") : nullptr;
+  if (given)
+    problems.add(given->where, "motion.duration_s", "the run ends at `heat.duration_s` with [heat.ice]; leave it out");
+}
+
+/// Sets that boundaries of heat name and are not there.
+void check_heat_sets(const Variant& variant, const Node& experiment, Problems& problems) {
   if (std::holds_alternative<MeshFile>(variant.mesh)) return;
   std::vector<std::string> known = generated_sets(variant.mesh);
   for (const auto& [name, selection] : variant.sets) known.push_back(name);
@@ -316,7 +329,10 @@ Variant scene::read_variant(const Node& experiment, const std::filesystem::path&
   const std::size_t before = problems.count();
   read_section(variant_section(), experiment, &variant, {problems, "", experiment.where});
   if (problems.count() > before) return variant;
-  if (variant.heat) check_heat_alone(variant, experiment, problems);
+  if (variant.heat) {
+    is_heat_alone(variant) ? check_heat_alone(experiment, problems) : check_one_end(experiment, problems);
+    check_heat_sets(variant, experiment, problems);
+  }
   auto* file = std::get_if<MeshFile>(&variant.mesh);
   if (file && file->path.is_relative()) file->path = base / file->path;
   if (auto* body = std::get_if<ImplicitBody>(&variant.mesh)) complete_surfaces(*body, experiment, base, problems);

@@ -514,7 +514,7 @@ TEST(EveryKey, OfTheLiverIsRead) {
   EXPECT_EQ(l.growth, 0.2);
 }
 
-/// Keys of [heat], which is a scene of its own.
+/// Keys of [heat], beside mechanics of their own.
 const std::string kHeatKeys = R"([mesh]
 kind = "box"
 [heat]
@@ -526,6 +526,11 @@ first_step_s = 0.02
 longest_step_s = 30
 tolerance_K = 0.1
 isotherms_C = [-5, -15]
+[heat.ice]
+factor = 50
+viscosity_factor = 20
+expansion = 0.06
+every_s = 0.25
 [[heat.tissue]]
 preset = "soft_tissue"
 region = "core"
@@ -637,6 +642,10 @@ TEST(EveryKey, OfHeatIsRead) {
   EXPECT_EQ(h.options.longest_step, 30.0);
   EXPECT_EQ(h.options.tolerance, 0.1);
   EXPECT_THAT(h.options.isotherms, ElementsAre(-5.0, -15.0));
+  EXPECT_EQ(h.ice->options.factor, 50.0);
+  EXPECT_EQ(h.ice->options.viscosity_factor, 20.0);
+  EXPECT_EQ(h.ice->options.expansion, 0.06);
+  EXPECT_EQ(h.ice->every, 0.25);
   ASSERT_EQ(h.tissues.size(), 1U);
   EXPECT_EQ(h.tissues[0].region, "core");
   ThermalTissue t{.density = 1010, .conductivity = 0.51, .frozen_conductivity = 2.1, .specific_heat = 3610};

@@ -64,9 +64,10 @@ fs::path variant_folder(const fs::path& folder, const std::string& wanted, RunFo
 }
 
 void take_frames(const fs::path& folder, RunFolder& run) {
-  if (is_file(folder / "heat.csv")) {
+  if (is_file(folder / "heat.csv") && !is_file(folder / "view.jsonl")) {
     refuse(folder,
-           "a run of heat, which the view does not show yet; open report.html, draw it by `glisson picture`, or open "
+           "a run of heat alone, which the view does not show yet; open report.html, draw it by `glisson picture`, or "
+           "open "
            "frames.pvd in ParaView");
   }
   const std::size_t named = [&] {

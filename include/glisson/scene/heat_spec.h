@@ -10,6 +10,7 @@
 
 #include "glisson/heat/heat_simulation.h"
 #include "glisson/heat/thermal_tissue.h"
+#include "glisson/instruments/ice.h"
 #include "glisson/math.h"
 #include "glisson/time_function.h"
 
@@ -218,7 +219,13 @@ struct HeatIsothermSpec {
   }
 };
 
-/// An experiment of heat.
+/// Mechanics beside heat: the body moves, and freezes in the shape that it has.
+struct HeatIceSpec {
+  IceOptions options;
+  double every = 1.0;  ///< time after which each learns of the other [s]
+};
+
+/// An experiment of heat, alone or beside mechanics.
 struct HeatSpec {
   std::vector<HeatTissueSpec> tissues;
   HeatOptions options;
@@ -228,8 +235,9 @@ struct HeatSpec {
   std::vector<HeatSensorSpec> sensors;
   std::vector<HeatFrontSpec> fronts;
   std::vector<HeatIsothermSpec> isotherms;
-  double duration = 600.0;     ///< [s]
-  double sample_every = 10.0;  ///< between lines of the tables; steps end there [s]
+  std::optional<HeatIceSpec> ice;  ///< none: heat alone
+  double duration = 600.0;         ///< [s]
+  double sample_every = 10.0;      ///< between lines of the tables; steps end there [s]
   std::string origin;
 };
 

@@ -55,7 +55,7 @@ struct ChartSpec {
 struct CheckSpec {
   enum class At { end, largest, least, peak };
   std::string what;    ///< a sentence
-  std::string column;  ///< of forces.csv or probes.csv, of a scene of heat of temperature.csv or heat.csv
+  std::string column;  ///< of forces.csv or probes.csv, with heat also of temperature.csv or heat.csv
   std::string over;    ///< a column that it is divided by, line by line; empty: none
   At at = At::end;
   std::optional<double> expected;  ///< with a tolerance, in place of the bounds, which follow
@@ -127,6 +127,7 @@ struct RunEvent {
 };
 
 struct BuiltVariant;
+class HeatCoupling;
 
 struct RunSummary {
   std::size_t vertices = 0, tets = 0;
@@ -203,7 +204,7 @@ int most_drag_stages(const Variant& variant);
 
 /// The body of a variant with its supports, loads, instruments and probes, at rest.
 struct BuiltVariant {
-  /// @throws SceneError if mesh, sets, tissues, step or constraints cannot be used, or it is of heat
+  /// @throws SceneError if mesh, sets, tissues, step or constraints cannot be used, or it is of heat alone
   BuiltVariant(const Variant& variant, const MeshLoader& load);
 
   std::vector<ConstraintId> supports;                    ///< per variant.fixed
@@ -212,6 +213,7 @@ struct BuiltVariant {
   std::vector<std::shared_ptr<Capsule>> capsules;  ///< per variant.capsules
   std::shared_ptr<Container> container;            ///< null: none
   Probes probes;                                   ///< per variant.probes
+  std::shared_ptr<HeatCoupling> heat;              ///< of [heat.ice] (heat_run.h); null: none
 
  private:
   BuiltVariant(TetMesh mesh, const Variant& variant);

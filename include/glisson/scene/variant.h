@@ -349,7 +349,7 @@ struct Variant {
   std::vector<CapsuleSpec> capsules;
   std::optional<ContainerSpec> container;
   std::vector<ProbeSpec> probes;
-  std::optional<HeatSpec> heat;  ///< of a scene of heat, which has no mechanics: heat_run.h runs it
+  std::optional<HeatSpec> heat;  ///< alone (is_heat_alone), or beside the mechanics
   SimulationOptions simulation;
   OnInversion on_inversion = OnInversion::go_on;
   std::optional<double> duration;          ///< [s]; none: until the last motion has ended
@@ -358,6 +358,8 @@ struct Variant {
   std::string scene_name = "scene";  ///< the scene's file, for messages
 };
 
+/// Whether it has no mechanics: heat_run.h runs it.
+inline bool is_heat_alone(const Variant& variant) { return variant.heat && !variant.heat->ice; }
 /// Whether the tissue of the body or of some region passes a test.
 template <class Test>
 bool any_tissue(const Variant& variant, Test test) {

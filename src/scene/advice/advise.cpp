@@ -19,10 +19,10 @@ struct Rule {
 };
 constexpr Rule<const Variant&, const InstrumentSpec&, const TetMesh&> kInstrumentRules[] = {
     {"misses", warning, misses}, {"edge", warning, edge}, {"zone", warning, zone}, {"coarse", warning, coarse}};
-constexpr Rule<const StepCase&> kStepRules[] = {{"branches", remark, branches}, {"corners", warning, corners},
-                                                {"mass", remark, mass},         {"limits", remark, limits},
-                                                {"viscous", remark, viscous},   {"slow", remark, slow},
-                                                {"fast", warning, fast},        {"adaptive", remark, adaptive}};
+constexpr Rule<const StepCase&> kStepRules[] = {
+    {"branches", remark, branches}, {"corners", warning, corners},  {"mass", remark, mass},
+    {"limits", remark, limits},     {"viscous", remark, viscous},   {"slow", remark, slow},
+    {"fast", warning, fast},        {"adaptive", remark, adaptive}, {"freezing", warning, freezing}};
 
 /// Collects what rules say, with what they say it of.
 class Collector {

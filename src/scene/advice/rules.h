@@ -68,6 +68,8 @@ Texts viscous(const StepCase& c);
 Texts slow(const StepCase& c);
 /// Tools that are faster than the waves that take tissue out of their way.
 Texts fast(const StepCase& c);
+/// That ice makes explicit steps short, and the integrator whose steps it does not.
+Texts freezing(const StepCase& c);
 /// The tissues for which adaptive precision can do nothing.
 Texts adaptive(const StepCase& c);
 

@@ -137,6 +137,16 @@ Texts viscous(const StepCase& c) {
   return {"viscosity keeps the step short; " + best.text};
 }
 
+Texts freezing(const StepCase& c) {
+  const Variant& v = c.variant;
+  if (!v.heat || !v.heat->ice || capabilities(v.simulation.integrator).any_step_is_stable) return {};
+  const double factor = v.heat->ice->options.factor, step = kAutomatic * c.rest.stable_step_s / std::sqrt(factor);
+  return {
+      fill("ice that is {} times as stiff as its tissue leaves steps of {} s, {} of them for the {} s of heat;\n"
+           "integrator = \"implicit\" or \"quasi_static\" has no such limit",
+           {digits(3, factor), digits(2, step), digits(1, v.heat->duration / step), digits(3, v.heat->duration)})};
+}
+
 Texts adaptive(const StepCase& c) {
   if (c.variant.simulation.precision != Precision::adaptive) return {};
   std::vector<std::string> own;

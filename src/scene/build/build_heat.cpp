@@ -1,6 +1,7 @@
 // build_heat.cpp — from what [heat] of a variant says to its HeatSimulation, and what is read of it.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <utility>
@@ -166,33 +167,51 @@ void BuiltHeat::add_sources(const Variant& variant) {
   }
 }
 
+namespace {
+
+/// Weights of the vertices of a region, which sum to 1.
+std::vector<std::pair<std::uint32_t, double>> weights_of_region(const TetMesh& mesh, int region) {
+  std::map<std::uint32_t, double> weights;
+  double whole = 0.0;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    if (mesh.region_of(t) != region) continue;
+    whole += six_rest_volume(mesh, t);
+    for (const std::uint32_t v : mesh.tets[t]) weights[v] += 0.25 * six_rest_volume(mesh, t);
+  }
+  for (auto& [v, weight] : weights) weight /= whole;
+  return {weights.begin(), weights.end()};
+}
+
+/// What `make` finds in a body that may have lost the place; nothing where it has.
+template <class Make>
+auto if_there(Make make) -> std::optional<decltype(make())> {
+  try {
+    return make();
+  } catch (const std::invalid_argument&) {
+    return std::nullopt;
+  }
+}
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
 void BuiltHeat::add_sensors(const Variant& variant) {
   const TetMesh& mesh = simulation.mesh();
-  std::vector<Vec3d> points;
   for (const HeatSensorSpec& x : heat_of(variant).sensors) {
     const int count = x.from ? x.count : x.region.empty() ? 1 : 0;
     for (int k = 0; k < count; ++k) {
       const Vec3d at = x.from ? *x.from + (*x.to - *x.from) * (static_cast<double>(k) / (count - 1)) : *x.point;
-      placed(variant, x.origin, [&] { return HeatPoints(mesh, std::span(&at, 1)); });
-      points.push_back(at);
+      points_.push_back({at, placed(variant, x.origin, [&] { return HeatPoints(mesh, std::span(&at, 1)); })});
       temperature_columns_.push_back(x.name + (x.from ? "_" + std::to_string(k + 1) : "") + "_C");
       is_mean_.push_back(0);
     }
     if (x.region.empty()) continue;
     const int region = region_with_tets(variant, x.origin, mesh, x.region);
-    std::map<std::uint32_t, double> weights;
-    double whole = 0.0;
-    for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-      if (mesh.region_of(t) != region) continue;
-      whole += six_rest_volume(mesh, t);
-      for (const std::uint32_t v : mesh.tets[t]) weights[v] += 0.25 * six_rest_volume(mesh, t);
-    }
-    for (auto& [v, weight] : weights) weight /= whole;
-    means_.push_back({{weights.begin(), weights.end()}});
+    means_.push_back({region, {weights_of_region(mesh, region)}});
     temperature_columns_.push_back(x.name + "_C");
     is_mean_.push_back(1);
   }
-  points_ = HeatPoints(mesh, points);
 }
 
 void BuiltHeat::add_volumes(const Variant& variant) {
@@ -205,12 +224,11 @@ void BuiltHeat::add_volumes(const Variant& variant) {
     column("frozen_" + x.region + "_m3"), column("dead_" + x.region + "_m3");
   }
   for (const HeatFrontSpec& x : heat_of(variant).fronts) {
-    fronts_.push_back(
-        {placed(variant, x.origin, [&] { return HeatLine(mesh, x.from, x.to); }), x.temperature, x.above});
+    fronts_.push_back({x, placed(variant, x.origin, [&] { return HeatLine(mesh, x.from, x.to); })});
     column(x.name + "_m");
   }
   for (const HeatIsothermSpec& x : heat_of(variant).isotherms) {
-    Isotherm isotherm{.temperature = x.temperature, .region = {}, .plane = {}};
+    Isotherm isotherm{.spec = x, .region = {}, .plane = {}};
     if (!x.region.empty()) isotherm.region = region_with_tets(variant, x.origin, mesh, x.region);
     if (x.plane)
       isotherm.plane = placed(variant, x.origin, [&] { return HeatPlane(mesh, x.plane->point, x.plane->normal); });
@@ -218,23 +236,51 @@ void BuiltHeat::add_volumes(const Variant& variant) {
     for (const char* what : {"_volume_m3", "_extent_x_m", "_extent_y_m", "_extent_z_m"}) column(x.name + what);
     if (x.plane) column(x.name + "_area_m2"), column(x.name + "_width_m");
   }
-  for (const char* name :
-       {"stored_J", "held_J", "surface_J", "blood_J", "metabolism_J", "sources_J", "imbalance_J", "limited_share"})
+  for (const char* name : {"stored_J", "held_J", "surface_J", "blood_J", "metabolism_J", "sources_J", "removed_J",
+                           "imbalance_J", "limited_share"})
     column(name);
+}
+
+void BuiltHeat::change_mesh(TetMesh changed, std::span<const std::uint32_t> origins) {
+  simulation.change_mesh(std::move(changed), origins);
+  const TetMesh& mesh = simulation.mesh();
+  for (Point& x : points_)
+    x.place = if_there([&] { return HeatPoints(mesh, std::span(&x.at, 1)); }).value_or(HeatPoints());
+  for (auto& [region, mean] : means_) mean.weights = weights_of_region(mesh, region);
+  for (Front& x : fronts_) x.line = if_there([&] { return HeatLine(mesh, x.spec.from, x.spec.to); });
+  for (Isotherm& x : isotherms_) {
+    if (x.spec.plane) x.plane = if_there([&] { return HeatPlane(mesh, x.spec.plane->point, x.spec.plane->normal); });
+  }
+}
+
+void BuiltHeat::read_isotherms(std::span<const double> t, std::vector<double>& row) const {
+  for (const Isotherm& x : isotherms_) {
+    const double level = x.spec.temperature;
+    const IsothermExtent extent = isotherm_extent(simulation.mesh(), t, level);
+    const Vec3d size = extent.high - extent.low;
+    row.push_back(x.region ? simulation.volume_below(level, x.region) : extent.volume);
+    row.insert(row.end(), {size.x, size.y, size.z});
+    if (!x.spec.plane) continue;
+    const HeatPlane::Section section = x.plane ? x.plane->below(t, level) : HeatPlane::Section{0.0, 0.0};
+    row.insert(row.end(), {section.area, section.width});
+  }
 }
 
 HeatSample BuiltHeat::read() const {
   const std::span<const double> t = simulation.temperature();
   HeatSample sample{.temperatures = {simulation.time()}, .heat = {simulation.time()}};
-  const std::vector<double> points = points_.read(t);
-  auto point = points.begin();
+  auto point = points_.begin();
   auto mean = means_.begin();
   for (const char is_mean : is_mean_) {
     double value = 0.0;
-    if (is_mean == 0)
-      value = *point++;
-    else
-      for (const auto& [v, weight] : (mean++)->weights) value += weight * t[v];
+    if (is_mean == 0) {
+      value = point->place.size() > 0 ? point->place.read(t).front() : kNone;
+      ++point;
+    } else {
+      for (const auto& [v, weight] : mean->second.weights) value += weight * t[v];
+      if (mean->second.weights.empty()) value = kNone;
+      ++mean;
+    }
     sample.temperatures.push_back(value);
   }
   std::vector<double>& row = sample.heat;
@@ -244,20 +290,16 @@ HeatSample BuiltHeat::read() const {
     row.insert(row.end(), {simulation.frozen_volume(region), simulation.dead_volume(region)});
   const std::vector<double> frozen = fronts_.empty() ? std::vector<double>() : simulation.frozen_share();
   for (const Front& x : fronts_) {
-    const double colder = x.temperature ? x.line.length_below(t, *x.temperature) : x.line.integral(frozen);
-    row.push_back(x.above ? colder - x.line.length_below(t, *x.above) : colder);
+    if (!x.line) {
+      row.push_back(kNone);
+      continue;
+    }
+    const double colder = x.spec.temperature ? x.line->length_below(t, *x.spec.temperature) : x.line->integral(frozen);
+    row.push_back(x.spec.above ? colder - x.line->length_below(t, *x.spec.above) : colder);
   }
-  for (const Isotherm& x : isotherms_) {
-    const IsothermExtent extent = isotherm_extent(simulation.mesh(), t, x.temperature);
-    const Vec3d size = extent.high - extent.low;
-    row.push_back(x.region ? simulation.volume_below(x.temperature, x.region) : extent.volume);
-    row.insert(row.end(), {size.x, size.y, size.z});
-    if (!x.plane) continue;
-    const HeatPlane::Section section = x.plane->below(t, x.temperature);
-    row.insert(row.end(), {section.area, section.width});
-  }
+  read_isotherms(t, row);
   const HeatLedger l = simulation.ledger();
-  row.insert(row.end(), {l.stored, l.held, l.surface, l.blood, l.metabolism, l.sources, l.imbalance(),
+  row.insert(row.end(), {l.stored, l.held, l.surface, l.blood, l.metabolism, l.sources, l.removed, l.imbalance(),
                          simulation.state().limited_share});
   return sample;
 }

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/nearest.h"
+#include "glisson/scene/heat_run.h"
 #include "glisson/scene/scene.h"
 #include "mesh/inspect/vertex_set.h"
 #include "mesh/topology/require_valid.h"
@@ -154,9 +155,10 @@ auto constrained(const Variant& variant, const std::string& origin, const std::s
 }
 
 const Variant& with_mechanics(const Variant& variant) {
-  if (variant.heat) {
+  if (is_heat_alone(variant)) {
     fail(variant, variant.heat->origin,
-         "the scene is one of heat, which `glisson run` and `glisson check` take, BuiltHeat and run_heat in C++, and "
+         "the scene is one of heat alone, without [heat.ice], which `glisson run` and `glisson check` take, BuiltHeat "
+         "and run_heat in C++, and "
          "HeatSimulation in Python; what was asked for needs mechanics");
   }
   return variant;
@@ -228,6 +230,15 @@ void attach_interactions(const Variant& variant, BuiltVariant& built) {
     located(variant, variant.instruments[i].origin, [&] { simulation.attach(instrument); });
   }
   scene::join(built.instruments, built.capsules);
+}
+
+void attach_heat(const Variant& variant, BuiltVariant& built) {
+  located(variant, variant.heat->origin, [&] {
+    built.heat = std::make_shared<HeatCoupling>(variant, built.simulation.mesh());
+    built.simulation.attach(built.heat->ice());
+    built.simulation.attach(built.heat);
+    if (!built.heat->trouble().empty()) throw std::invalid_argument(built.heat->trouble());
+  });
 }
 
 /// The tip of an instrument that a probe names.
@@ -303,6 +314,7 @@ BuiltVariant::BuiltVariant(TetMesh whole, const Variant& variant)
   }
   attach_interactions(variant, *this);
   probes = probes_of(variant, *this);
+  if (variant.heat && variant.heat->ice) attach_heat(variant, *this);
 }
 
 PosesMotion started(const PosesSpec& spec) {

@@ -69,6 +69,7 @@ std::string scene_reference_markdown() {
   text += section_text(heat_front_section(), "`[[heat.front]]`");
   text += section_text(heat_isotherm_section(), "`[[heat.isotherm]]`");
   text += section_text(heat_plane_section(), "`[heat.isotherm.plane_m]`");
+  text += section_text(heat_ice_section(), "`[heat.ice]`");
   text += section_text(output_section(), "`[output]`");
   text += section_text(chart_section(), "`[[chart]]`");
   text += section_text(measured_section(), "`[[chart.measured]]`");

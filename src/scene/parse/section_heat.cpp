@@ -262,12 +262,29 @@ const SectionSpec& heat_isotherm_section() {
   return section;
 }
 
+const SectionSpec& heat_ice_section() {
+  static const SectionSpec section = [] {
+    Section<HeatIceSpec> s("heat.ice",
+                           "Mechanics beside heat: the scene has both, tissue freezes in the shape that it has, and is "
+                           "stiffer from then on "
+                           "(docs/heat.md). An empty table is enough.");
+    s.fields(&HeatIceSpec::options);
+    s.key("every_s", &HeatIceSpec::every,
+          "time after which heat knows of the body's shape and mechanics of its ice; long "
+          "steps end there")
+        .in("s")
+        .within(above(0));
+    return s.spec();
+  }();
+  return section;
+}
+
 const SectionSpec& heat_section() {
   static const SectionSpec section = [] {
     Section<HeatSpec> s(
         "heat",
         "The temperature of the body: conduction, blood, freezing and thawing (docs/heat.md). A scene with it "
-        "is one of heat alone: mechanics beside it follow. It writes temperature.csv and heat.csv.");
+        "is one of heat alone, without mechanics, unless it has `[heat.ice]`. It writes temperature.csv and heat.csv.");
     s.key("duration_s", &HeatSpec::duration, "simulated time").in("s").within(above(0)).must();
     s.key("sample_every_s", &HeatSpec::sample_every, "time between lines of the tables; steps end there")
         .in("s")
@@ -280,6 +297,9 @@ const SectionSpec& heat_section() {
     s.tables("sensor", heat_sensor_section(), &HeatSpec::sensors, "temperatures that are read");
     s.tables("front", heat_front_section(), &HeatSpec::fronts, "fronts along lines");
     s.tables("isotherm", heat_isotherm_section(), &HeatSpec::isotherms, "volumes below isotherms");
+    s.table(
+        "ice", heat_ice_section(), [](HeatSpec & h) -> auto& { return h.ice.emplace(); },
+        "mechanics beside heat, with ice that is stiffer");
     s.finish(check_heat);
     return s.spec();
   }();

@@ -158,7 +158,7 @@ const SectionSpec& variant_section() {
     s.tables("probe", probe_section(), &Variant::probes, "places that are read with the forces");
     s.table(
         "heat", heat_section(), [](Variant & v) -> auto& { return v.heat.emplace(); },
-        "the body's temperature, in place of mechanics");
+        "the body's temperature, in place of mechanics or, with `[heat.ice]`, beside it");
     s.table("output", output_section(), &Variant::output, "what is stored");
     for (const KeySpec& key : scene_section().keys) s.spec().other_words.push_back(key.name);
     s.finish([](Variant& v, const Node& table, const Place& place) {

@@ -56,6 +56,7 @@ const SectionSpec& heat_sensor_section();        ///< fills HeatSensorSpec
 const SectionSpec& heat_front_section();         ///< fills HeatFrontSpec
 const SectionSpec& heat_isotherm_section();      ///< fills HeatIsothermSpec
 const SectionSpec& heat_plane_section();         ///< fills HeatPlaneSpec
+const SectionSpec& heat_ice_section();           ///< fills HeatIceSpec
 const SectionSpec& output_section();             ///< fills OutputSpec
 const SectionSpec& measured_section();           ///< fills MeasuredSpec
 const SectionSpec& chart_section();              ///< fills ChartSpec

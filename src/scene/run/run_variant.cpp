@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 
+#include "glisson/scene/heat_run.h"
 #include "glisson/scene/scene.h"
 #include "scene/run/run_watch.h"
 #include "scene/run/sample_between.h"
@@ -349,6 +350,7 @@ RunSummary Run::to_end() {
     else if (stepped && sample_due())
       take_sample();
     if (stepped && frame_due()) take_frame();
+    if (built_.heat && !built_.heat->trouble().empty()) end_by({built_.heat->end(), built_.heat->trouble()});
     show_progress();
   }
   if (!sampled_ && forces_current_) take_sample();
