@@ -1,6 +1,6 @@
 // heat_run.h — a scene of heat, built and run.
 //
-// A scene has either mechanics (scene.h: BuiltVariant, run_variant) or, where it has a [heat], heat alone.
+// A scene has mechanics (scene.h: BuiltVariant, run_variant), or heat alone where it has a [heat], or both where that has an [heat.ice].
 #pragma once
 
 #include <atomic>
