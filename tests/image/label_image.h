@@ -1,6 +1,8 @@
 // label_image.h — images that tests make.
 #pragma once
 
+#include <string>
+
 #include "glisson/image/image.h"
 
 namespace glisson::test {
@@ -19,6 +21,22 @@ LabelImage label_image(const std::array<std::size_t, 3>& size, double edge, Labe
         static_cast<std::uint16_t>(label(static_cast<int>(at[0]), static_cast<int>(at[1]), static_cast<int>(at[2])));
   }
   return image;
+}
+
+/// The same as the bytes of a MetaImage (.mha), for programs and scenes. Turned about z, so that its axes are those of RAS.
+template <class Label>
+std::string meta_image(const std::array<int, 3>& size, double edge_mm, Label label) {
+  const std::string spacing = std::to_string(edge_mm);
+  std::string text =
+      "ObjectType = Image\nNDims = 3\nBinaryData = True\nElementSpacing = " + spacing + " " + spacing + " " + spacing +
+      "\nOffset = 0 0 0\nTransformMatrix = -1 0 0 0 -1 0 0 0 1\nDimSize = " + std::to_string(size[0]) + " " +
+      std::to_string(size[1]) + " " + std::to_string(size[2]) + "\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n";
+  for (int k = 0; k < size[2]; ++k) {
+    for (int j = 0; j < size[1]; ++j) {
+      for (int i = 0; i < size[0]; ++i) text += static_cast<char>(label(i, j, k));
+    }
+  }
+  return text;
 }
 
 }  // namespace glisson::test

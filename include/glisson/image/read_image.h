@@ -46,6 +46,9 @@ LabelImage read_label_image(const std::filesystem::path& file, const ReadImageOp
 /// The names of labels that a file gives, by its header alone; empty where it gives none. @throws ImageError
 std::map<int, std::string> read_label_names(const std::filesystem::path& file);
 
+/// The grid of an image, by its header alone. @throws ImageError
+ImageGrid read_image_grid(const std::filesystem::path& file);
+
 /// Reads values, scaled as the file says. @throws ImageError as read_label_image, and for values that are not finite
 GreyImage read_grey_image(const std::filesystem::path& file, const ReadImageOptions& options = {});
 

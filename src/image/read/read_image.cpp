@@ -280,6 +280,8 @@ std::map<int, std::string> read_label_names(const std::filesystem::path& file) {
   return image::header_of({file, {}}).names;
 }
 
+ImageGrid read_image_grid(const std::filesystem::path& file) { return image::header_of({file, {}}).grid; }
+
 GreyImage read_grey_image(const std::filesystem::path& file, const ReadImageOptions& options) {
   return image::read_grey({file, {}}, options);
 }
