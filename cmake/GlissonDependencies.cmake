@@ -3,6 +3,7 @@ find_package(Eigen3 3.3 REQUIRED NO_MODULE)
 find_package(hwy REQUIRED CONFIG)
 find_package(TBB REQUIRED CONFIG)
 find_package(tomlplusplus REQUIRED)
+find_package(ZLIB REQUIRED)
 if(GLISSON_BUILD_IO)
   find_package(VTK 9 REQUIRED COMPONENTS ${GLISSON_VTK_COMPONENTS})
   find_library(GLISSON_DEFLATE deflate REQUIRED)  # it is linked by this name, here and by users of the installed package

@@ -3,7 +3,8 @@
 #   bin/glisson   include/glisson/   lib/libglisson*.a   share/glisson/scenes/
 #   lib/cmake/Glisson/: GlissonConfig, GlissonConfigVersion, one Glisson<component>Targets a component
 #
-# The core looks for Highway; the components `scene`, `io` and `fit` look for toml++, VTK and Ceres, `heat` and `mesher` for nothing more.
+# The core looks for Highway; the components `scene`, `io` and `fit` look for toml++, VTK and Ceres, `image` for zlib, `heat` and `mesher`
+# for nothing more.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(glisson_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/Glisson")
@@ -24,6 +25,7 @@ endfunction()
 glisson_install_component(core glisson)
 glisson_install_component(heat glisson_heat)
 glisson_install_component(mesher glisson_mesher)
+glisson_install_component(image glisson_image)
 glisson_install_component(scene glisson_scene)
 glisson_install_component(io glisson_io)
 glisson_install_component(fit glisson_fit)

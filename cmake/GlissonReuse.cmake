@@ -8,7 +8,7 @@
 #
 # A folder that is absent, half made, of another compiler, version, flags or libraries, or that cannot be built, is left alone
 # and everything is compiled here.
-set(glisson_offered glisson_options glisson glisson_heat glisson_mesher glisson_scene glisson_io glisson_fit glisson_report glisson_fit_files)
+set(glisson_offered glisson_options glisson glisson_heat glisson_mesher glisson_image glisson_scene glisson_io glisson_fit glisson_report glisson_fit_files)
 
 function(glisson_describe_build out)
   string(TOUPPER "${CMAKE_BUILD_TYPE}" type)
@@ -16,7 +16,7 @@ function(glisson_describe_build out)
   set(text "")
   foreach(name CMAKE_SOURCE_DIR CMAKE_SYSTEM_PROCESSOR compiler CMAKE_CXX_COMPILER_ID CMAKE_CXX_COMPILER_VERSION
       CMAKE_BUILD_TYPE CMAKE_CXX_FLAGS CMAKE_CXX_FLAGS_${type} CMAKE_INTERPROCEDURAL_OPTIMIZATION GLISSON_SANITIZE
-      Eigen3_DIR hwy_DIR TBB_DIR tomlplusplus_DIR VTK_DIR Ceres_DIR nlohmann_json_DIR fmt_DIR)
+      Eigen3_DIR hwy_DIR TBB_DIR tomlplusplus_DIR ZLIB_LIBRARY VTK_DIR Ceres_DIR nlohmann_json_DIR fmt_DIR)
     string(APPEND text "${name}=${${name}}\n")
   endforeach()
   set(${out} "${text}" PARENT_SCOPE)

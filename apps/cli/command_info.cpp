@@ -1,4 +1,4 @@
-// command_info.cpp — glisson info: contents and defects of a mesh file.
+// command_info.cpp — glisson info: contents and defects of a mesh file, labels of an image.
 #include <fmt/format.h>
 
 #include <map>
@@ -7,6 +7,8 @@
 #include <string>
 
 #include "cli/commands.h"
+#include "cli/image_info.h"
+#include "glisson/image/read_image.h"
 #include "glisson/io.h"
 #include "program/exit_code.h"
 #include "program/option_check.h"
@@ -56,6 +58,11 @@ nlohmann::ordered_json info_json(const std::string& file, const TetMesh& mesh, c
 }
 
 int info(const InfoOptions& options) {
+  if (is_image_file(options.mesh)) {
+    if (options.scale != 1.0)
+      throw std::invalid_argument("--scale is for meshes; an image has its unit of length in its header");
+    return image_info(options.mesh, options.json);
+  }
   const ImportedMesh imported = read_mesh(options.mesh, options.scale);
   if (options.json) {
     const auto json = info_json(options.mesh, imported.mesh, imported.report);
@@ -69,9 +76,11 @@ int info(const InfoOptions& options) {
 }  // namespace
 
 void add_info(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand("info", "contents and defects of a mesh file");
+  CLI::App* command = program.add_subcommand("info", "contents and defects of a mesh file, labels of an image");
   const auto options = std::make_shared<InfoOptions>();
-  command->add_option("mesh", options->mesh, "mesh file: .vtu, .vtk, .msh, .inp")->required()->type_name("MESH");
+  command->add_option("mesh", options->mesh, "mesh file (.vtu, .vtk, .msh, .inp) or image (.nii, .nii.gz, .nrrd, .nhdr, .mha, .mhd)")
+      ->required()
+      ->type_name("MESH");
   command->add_option("--scale", options->scale, "factor on coordinates: 0.001 for a file in millimetres")
       ->type_name("S")
       ->check(within(above(0), Numbers::all))
@@ -79,6 +88,7 @@ void add_info(CLI::App& program, Action& action) {
   command->add_flag("--json", options->json, "print JSON");
   command->footer(
       "Examples:\n  glisson info liver.vtu\n  glisson info organ_mm.msh --scale 0.001\n"
+      "  glisson info labels.nii.gz\n"
       "  glisson info liver.vtu --json | jq .volume_m3");
   command->callback([options, &action] { action = [options] { return info(*options); }; });
 }

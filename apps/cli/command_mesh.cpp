@@ -1,4 +1,5 @@
-// command_mesh.cpp — glisson mesh: the mesh of a scene, or of the body within a closed surface, as a file, and its figures.
+// command_mesh.cpp — glisson mesh: the mesh of a scene, of the body within a closed surface, or of labels of an image, as a file, and its
+// figures.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +12,9 @@
 
 #include "base/text.h"
 #include "cli/commands.h"
+#include "cli/image_mesh_command.h"
 #include "cli/progress.h"
+#include "glisson/image/read_image.h"
 #include "glisson/io.h"
 #include "glisson/scene/surface_file.h"
 #include "glisson/simulation/mesh_step.h"
@@ -31,6 +34,7 @@ constexpr const char* kMeshFooter =
     "Examples:\n"
     "  glisson mesh scenes/organs/liver.toml --out liver.vtu\n"
     "  glisson mesh organ.stl --scale 0.001 --edge-mm 4 --out organ.vtu\n"
+    "  glisson mesh labels.nii.gz --labels liver,vessels=63+64 --implant tumour=ball:80,165,400,18mm --out body.vtu\n"
     "  glisson mesh abaqus_mm.inp --scale 0.001 --out organ.vtu\n"
     "  glisson mesh scene.toml --set mesh.edge_mm=3 --out fine.vtu --json figures.json";
 
@@ -41,6 +45,7 @@ struct MeshOptions {
   std::optional<double> edge_mm, scale;  ///< of a surface
   std::string out, json;
   bool quiet = false;
+  ImageMeshOptions image;
 };
 
 struct MeshFigures {
@@ -196,6 +201,12 @@ int mesh(const MeshOptions& options) {
                                 ": the mesh is written as .vtu; give a name that ends in .vtu");
   }
   const std::string& given = options.scene.scene;
+  if (is_image_file(given)) {
+    if (options.scale || !options.scene.set.empty() || !options.scene.mesh.empty() || !options.scene.variants.empty())
+      throw std::invalid_argument(given + ": --scale, --set, --mesh and --variant are not for images; leave them out");
+    return mesh_of_image(given, options.image, {options.out, options.json, options.edge_mm, options.quiet});
+  }
+  refuse_image_options(options.image);
   const Variant variant = is_surface_file(given) ? surface_variant(options)
                           : is_tet_file(given)   ? tet_file_variant(options)
                                                  : scene_variant(options);
@@ -243,8 +254,14 @@ void add_mesh(CLI::App& program, Action& action) {
   const auto options = std::make_shared<MeshOptions>();
   add_scene_options(*command, options->scene);
   command->get_option("scene")->description(
-      "scene file (TOML), a closed surface (.stl, .obj, .ply), or tets (.vtu, .vtk, .msh, .inp)");
-  command->add_option("--edge-mm", options->edge_mm, "of a surface: mean length of the tets' edges")->type_name("E");
+      "scene file (TOML), a closed surface (.stl, .obj, .ply), an image of labels (.nii, .nii.gz, .nrrd, .nhdr, .mha, "
+      ".mhd), or tets (.vtu, "
+      ".vtk, .msh, .inp)");
+  command
+      ->add_option("--edge-mm", options->edge_mm,
+                   "of a surface or an image: mean length of the tets' edges (image: two voxels)")
+      ->type_name("E");
+  add_image_mesh_options(*command, options->image);
   command
       ->add_option("--scale", options->scale,
                    "of a surface or of tets: factor on the coordinates, 0.001 for a file in millimetres")

@@ -39,7 +39,7 @@ constexpr const char* kFooter =
     "  glisson plot out/my_scene --pdf          the charts of its report as files for a paper\n"
     "  glisson picture out/my_scene             the body at one instant, without a display\n"
     "  glisson mesh my_scene.toml --out b.vtu   write the mesh of a scene, and its figures\n"
-    "  glisson info organ.vtu                   contents and defects of a mesh file\n"
+    "  glisson info organ.vtu                   contents and defects of a mesh file, labels of an image\n"
     "  glisson bench --quick                    what a step costs on this machine\n"
     "\n"
     "See also `glisson COMMAND --help`. Exit status: 0 done, 1 failed, 2 a scene, mesh or option that cannot be\n"

@@ -29,6 +29,7 @@ std::string mesh_text(const MeshSource& source) {
   if (const auto* file = std::get_if<MeshFile>(&source)) return file->path.string();
   if (std::holds_alternative<ImplicitBody>(source)) return "a body of shapes";
   if (std::holds_alternative<LiverOptions>(source)) return "a liver of shapes";
+  if (std::holds_alternative<ImageBody>(source)) return "a body of labels";
   return std::holds_alternative<BoxOptions>(source) ? "a box" : "a cylinder";
 }
 

@@ -9,6 +9,7 @@
 #include <functional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "glisson/math.h"
@@ -79,6 +80,13 @@ class MeshingStopped : public std::runtime_error {
   MeshingStopped() : std::runtime_error("the mesher was stopped") {}
 };
 
+/// Thrown when a region is left without a tet.
+class RegionLost : public std::invalid_argument {
+ public:
+  RegionLost(std::string region, const std::string& what) : std::invalid_argument(what), name(std::move(region)) {}
+  std::string name;
+};
+
 /// Meshes regions by a body-centred lattice whose vertices are drawn onto the interfaces and whose edges are cut at the
 /// interfaces, then improves the tets until all dihedral angles are between 10° and 165°.
 ///                                                   [LabelleShewchuk2007; BronsonLevineWhitaker2012]
@@ -87,6 +95,7 @@ class MeshingStopped : public std::runtime_error {
 /// @throws std::invalid_argument  naming the region or option, its value and the way out: no region, an edge that is not
 ///   positive or longer than a region is wide, regions that are empty, a value of `size_at` that is out of range, more than max_tets or
 ///   than there is memory for
+/// @throws RegionLost, an invalid_argument  where a region is too thin for the edge, or covered by others
 /// @throws MeshingStopped  when `progress` returns false
 /// Cost: some 10 µs and 150 bytes a tet, up to 100 µs where many thin parts meet.
 RegionMesh mesh_regions(const std::vector<BodyRegion>& regions, const RegionMeshOptions& options);

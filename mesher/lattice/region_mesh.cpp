@@ -123,7 +123,7 @@ void require_tets_in_each(const RegionFields& fields, const RegionMeshReport& re
                       box + ", or earlier regions cover it; give a smaller edge or another order";
     if (inside.all == 0) why = "its shapes leave nothing in " + box + "; see whether they overlap as they should";
     if (inside.all > 0 && inside.own == 0) why = "earlier regions cover it; name it before them";
-    throw std::invalid_argument("region \"" + v.name + "\" is left without a tet: " + why);
+    throw RegionLost(v.name, "region \"" + v.name + "\" is left without a tet: " + why);
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include "base/input_file.h"
 #include "base/nearest.h"
+#include "glisson/image/read_image.h"
 #include "glisson/scene/surface_file.h"
 #include "scene/build/build_instruments.h"
 #include "scene/build/select.h"
@@ -36,6 +37,7 @@ std::vector<std::string> generated_sets(const MeshSource& mesh) {
     if (liver->gallbladder) sets.emplace_back("gallbladder");
     return sets;
   }
+  if (const auto* body = std::get_if<ImageBody>(&mesh)) return image_set_names(*body);
   return {};
 }
 
@@ -257,6 +259,19 @@ void complete_surfaces(ImplicitBody& body, const Node& experiment, const std::fi
   }
 }
 
+/// Looks whether an image is there and has the labels' names.
+void complete_image(ImageBody& body, const Node& experiment, const std::filesystem::path& base, Problems& problems) {
+  const Node& mesh = *experiment.find("mesh");
+  if (body.path.is_relative()) body.path = base / body.path;
+  try {
+    image_set_names(body);
+  } catch (const ImageError& error) {
+    problems.add(mesh.find("path")->where, "mesh.path", error.what());
+  } catch (const std::invalid_argument& error) {
+    problems.add(mesh.find("labels")->where, "mesh", error.what());
+  }
+}
+
 void read_measured(MeasuredSpec& m) {
   const WordTable table = read_word_table(m.path);
   const std::size_t x = table.column(m.x), y = table.column(m.y);
@@ -336,6 +351,8 @@ Variant scene::read_variant(const Node& experiment, const std::filesystem::path&
   auto* file = std::get_if<MeshFile>(&variant.mesh);
   if (file && file->path.is_relative()) file->path = base / file->path;
   if (auto* body = std::get_if<ImplicitBody>(&variant.mesh)) complete_surfaces(*body, experiment, base, problems);
+  if (auto* body = std::get_if<ImageBody>(&variant.mesh)) complete_image(*body, experiment, base, problems);
+  if (problems.count() > before) return variant;
   Interactions instruments = complete_motions(variant, experiment, base, problems);
   if (problems.count() > before) return variant;
   if (const Node* tools = experiment.find("tool")) check_names(*tools->array(), "tool", problems);

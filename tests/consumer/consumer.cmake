@@ -1,7 +1,7 @@
 # The test `consumer_package`, for builds whose libraries a plain program can link (no sanitizer in them).
 if(GLISSON_INSTALL AND NOT GLISSON_SANITIZE)
   set(components)
-  foreach(component mesher heat scene io fit)
+  foreach(component mesher heat image scene io fit)
     if(TARGET glisson_${component})
       list(APPEND components ${component})
     endif()

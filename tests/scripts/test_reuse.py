@@ -8,7 +8,7 @@ import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-LIBRARIES = ("glisson", "glisson_heat", "glisson_mesher", "glisson_scene", "glisson_io", "glisson_fit", "glisson_report", "glisson_fit_files")
+LIBRARIES = ("glisson", "glisson_heat", "glisson_mesher", "glisson_image", "glisson_scene", "glisson_io", "glisson_fit", "glisson_report", "glisson_fit_files")
 PROJECT = """
 cmake_minimum_required(VERSION 3.25)
 project(Small LANGUAGES CXX)

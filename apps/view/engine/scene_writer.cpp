@@ -13,7 +13,7 @@ namespace {
 /// Whether the mesh is made of files.
 bool has_files(const MeshSource& mesh) {
   const auto* body = std::get_if<ImplicitBody>(&mesh);
-  return std::holds_alternative<MeshFile>(mesh) ||
+  return std::holds_alternative<MeshFile>(mesh) || std::holds_alternative<ImageBody>(mesh) ||
          (body != nullptr && std::any_of(body->shapes.begin(), body->shapes.end(), [](const NamedShape& s) {
             return std::holds_alternative<SurfaceShape>(s.what);
           }));

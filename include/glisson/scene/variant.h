@@ -14,6 +14,7 @@
 #include <variant>
 #include <vector>
 
+#include "glisson/image/image_body.h"
 #include "glisson/implicit.h"
 #include "glisson/instruments/blade.h"
 #include "glisson/instruments/capsule.h"
@@ -37,7 +38,7 @@ struct MeshFile {
   /// Factor on coordinates; none: metres, or millimetres where no organ is as large (glisson/io.h).
   std::optional<double> scale = 1.0;
 };
-using MeshSource = std::variant<BoxOptions, CylinderOptions, MeshFile, ImplicitBody, LiverOptions>;
+using MeshSource = std::variant<BoxOptions, CylinderOptions, MeshFile, ImplicitBody, LiverOptions, ImageBody>;
 
 // `origin` in the structs below is the place in the scene, `file:line:column: key`, for messages that need the mesh. It
 // may be empty.

@@ -27,6 +27,7 @@ std::string finer_mesh(const MeshSource& mesh, double factor) {
   }
   if (const auto* body = std::get_if<ImplicitBody>(&mesh)) return shorter(body->edge);
   if (const auto* liver = std::get_if<LiverOptions>(&mesh)) return shorter(liver->edge);
+  if (const auto* body = std::get_if<ImageBody>(&mesh)) return shorter(body->edge);
   return fill("a mesh {} times as fine there", {digits(2, factor)});
 }
 

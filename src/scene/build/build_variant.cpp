@@ -31,6 +31,7 @@ TetMesh source_mesh(const Variant& variant, const MeshLoader& load, const std::f
     if (const auto* box = std::get_if<BoxOptions>(&variant.mesh)) return box_mesh(*box);
     if (const auto* body = std::get_if<ImplicitBody>(&variant.mesh)) return implicit_mesh(*body, progress).mesh;
     if (const auto* liver = std::get_if<LiverOptions>(&variant.mesh)) return liver_mesh(*liver, progress).mesh;
+    if (const auto* body = std::get_if<ImageBody>(&variant.mesh)) return image_mesh(*body, progress).mesh;
     return cylinder_mesh(std::get<CylinderOptions>(variant.mesh));
   } catch (const std::invalid_argument& error) {
     fail(variant, "", std::string("mesh: ") + error.what());

@@ -43,6 +43,11 @@ bool multiply_cells(MeshSource& mesh, double factor) {
     for (MeshSize& size : liver->sizes) size.edge /= factor;
     return true;
   }
+  if (auto* body = std::get_if<ImageBody>(&mesh)) {
+    body->edge /= factor;
+    for (MeshSize& size : body->sizes) size.edge /= factor;
+    return true;
+  }
   auto* cylinder = std::get_if<CylinderOptions>(&mesh);
   if (cylinder == nullptr) return false;
   multiply(cylinder->radial_cells), multiply(cylinder->axial_cells);

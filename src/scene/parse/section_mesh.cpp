@@ -26,6 +26,15 @@ SectionSpec liver_kind() {
       "`right_triangular_ligament`, `left_triangular_ligament` and `falciform_ligament` (docs/liver.md).");
 }
 
+SectionSpec image_kind() {
+  return described<ImageBody>(
+      "The labels of an image (NIfTI, NRRD, MetaImage) as regions with the labels' names and numbers, in metres and "
+      "RAS axes: x to the "
+      "patient's right, y to the front, z to the head (docs/image.md). Its vertex sets: `NAME_surface`, what of a "
+      "region lies on the surface of "
+      "the body, `image_border`, where the image cuts the body, and those of `beside`.");
+}
+
 SectionSpec file_kind() {
   Section<MeshFile> s("file",
                       "A mesh of tetrahedra from a file: .vtu, .vtk, .msh (Gmsh 2.2 or 4.1), .inp (Abaqus). Its named "
@@ -128,8 +137,11 @@ const SectionSpec& mesh_section() {
     SectionSpec s;
     s.name = "mesh";
     s.help = "The body: a generated mesh or one from a file, selected by `kind`.";
-    s.kinds = {mesh_kind<BoxOptions>(box_kind()), mesh_kind<CylinderOptions>(cylinder_kind()),
-               mesh_kind<ImplicitBody>(implicit_body_kind()), mesh_kind<LiverOptions>(liver_kind()),
+    s.kinds = {mesh_kind<BoxOptions>(box_kind()),
+               mesh_kind<CylinderOptions>(cylinder_kind()),
+               mesh_kind<ImplicitBody>(implicit_body_kind()),
+               mesh_kind<LiverOptions>(liver_kind()),
+               mesh_kind<ImageBody>(image_kind()),
                mesh_kind<MeshFile>(file_kind())};
     return s;
   }();
