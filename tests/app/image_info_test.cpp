@@ -13,7 +13,7 @@ using ::testing::HasSubstr;
 
 /// A MetaImage of 8 × 6 × 5 voxels of 2 × 2 × 4 mm, LPS, its voxels from a function of their place.
 template <class Label>
-std::string meta_image(Label label) {
+std::string small_image(Label label) {
   std::string text =
       "ObjectType = Image\nNDims = 3\nBinaryData = True\nElementSpacing = 2 2 4\nOffset = 10 20 30\nDimSize = 8 6 5\n"
       "ElementType = MET_UCHAR\nElementDataFile = LOCAL\n";
@@ -32,7 +32,7 @@ TEST_F(ImageInfo, ListsLabels) {
     if (i == 5 && j == 2 && k == 2) return 3;
     return i == 7 && j == 5 && k == 4 ? 9 : 0;
   };
-  const std::string file = write("a.mha", meta_image(label));
+  const std::string file = write("a.mha", small_image(label));
   const Outcome text = run({"info", file});
   ASSERT_THAT(text, Exits(0));
   EXPECT_THAT(text.out, AllOf(HasSubstr("label image, 8 × 6 × 5 voxels of 2 × 2 × 4 mm"), HasSubstr("axes RAS"),
@@ -63,7 +63,7 @@ TEST_F(ImageInfo, ListsNames) {
 
 // An image of grey values gives these, and the reason why it is none of labels; one that is cut off gives a message.
 TEST_F(ImageInfo, GreyAndDamagedImages) {
-  std::string bytes = meta_image([](int i, int, int) { return i; });
+  std::string bytes = small_image([](int i, int, int) { return i; });
   bytes.replace(bytes.find("MET_UCHAR"), 9, "MET_CHAR\n");
   bytes.back() = static_cast<char>(-5);
   const Outcome grey = run({"info", write("grey.mha", bytes)});
