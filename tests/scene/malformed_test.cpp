@@ -89,12 +89,14 @@ const std::vector<Mistake> kMistakes{
      "mean "
      "\"single\"?"},
     {"UnknownKind", "\"box\"", "\"ball\"",
-     "s.toml:2:8: mesh.kind: expected one of \"box\", \"cylinder\", \"implicit\", \"liver\", \"image\", \"file\", got \"ball\""},
+     "s.toml:2:8: mesh.kind: expected one of \"box\", \"cylinder\", \"implicit\", \"liver\", \"image\", \"file\", got "
+     "\"ball\""},
     {"UnknownLaw", "", "[tissue.law]\nkind = \"stepp\"\n",
      "s.toml:17:8: tissue.law.kind: expected one of " + words_of(std::type_identity<StiffnessLaw>()) +
          ", got \"stepp\"; did you mean \"step\"?"},
     {"NoKind", "kind = \"box\"\n", "",
-     "s.toml:1:1: mesh: missing key `kind`: one of \"box\", \"cylinder\", \"implicit\", \"liver\", \"image\", \"file\""},
+     "s.toml:1:1: mesh: missing key `kind`: one of \"box\", \"cylinder\", \"implicit\", \"liver\", \"image\", "
+     "\"file\""},
     {"NoMesh", "[mesh]\nkind = \"box\"\ncells = [2, 2, 2]\nsize_m = [0.02, 0.02, 0.02]\n", "",
      "s.toml:1:1: missing key `mesh`: a table; the body's mesh"},
     {"NoSet", "set = \"z_min\"\n", "", "s.toml:9:1: fixed.0: missing key `set`: text in quotes; name of a vertex set"},
