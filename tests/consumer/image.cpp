@@ -8,8 +8,9 @@
 int main() {
   {
     std::ofstream file("cube.mha", std::ios::binary);
-    file << "ObjectType = Image\nNDims = 3\nBinaryData = True\nElementSpacing = 1 1 1\nOffset = 0 0 0\nDimSize = 3 3 3\n"
-            "ElementType = MET_UCHAR\nElementDataFile = LOCAL\n";
+    file
+        << "ObjectType = Image\nNDims = 3\nBinaryData = True\nElementSpacing = 1 1 1\nOffset = 0 0 0\nDimSize = 3 3 3\n"
+           "ElementType = MET_UCHAR\nElementDataFile = LOCAL\n";
     for (int k = 0; k < 27; ++k) file.put(k == 13 ? 7 : 0);
   }
   const glisson::LabelImage image = glisson::read_label_image("cube.mha");
