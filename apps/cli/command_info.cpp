@@ -78,7 +78,9 @@ int info(const InfoOptions& options) {
 void add_info(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("info", "contents and defects of a mesh file, labels of an image");
   const auto options = std::make_shared<InfoOptions>();
-  command->add_option("mesh", options->mesh, "mesh file (.vtu, .vtk, .msh, .inp) or image (.nii, .nii.gz, .nrrd, .nhdr, .mha, .mhd)")
+  command
+      ->add_option("mesh", options->mesh,
+                   "mesh file (.vtu, .vtk, .msh, .inp) or image (.nii, .nii.gz, .nrrd, .nhdr, .mha, .mhd)")
       ->required()
       ->type_name("MESH");
   command->add_option("--scale", options->scale, "factor on coordinates: 0.001 for a file in millimetres")

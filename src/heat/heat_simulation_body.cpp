@@ -52,9 +52,9 @@ void HeatSimulation::Impl::place_sources() {
 void HeatSimulation::Impl::require_changeable() const {
   const auto is_pattern = [](const Source& x) { return std::holds_alternative<Pattern>(x.place); };
   if (radio_.empty() && std::none_of(sources_.begin(), sources_.end(), is_pattern)) return;
-  throw std::invalid_argument(std::string("heat: change_mesh: ") +
-                              (radio_.empty() ? "a pattern of power" : "radio frequency") +
-                              " belongs to the tets that the body had; give power by region or line, or leave the mesh as it is");
+  throw std::invalid_argument(
+      std::string("heat: change_mesh: ") + (radio_.empty() ? "a pattern of power" : "radio frequency") +
+      " belongs to the tets that the body had; give power by region or line, or leave the mesh as it is");
 }
 
 std::map<std::uint32_t, double> HeatSimulation::Impl::shares_of_region(int region) const {

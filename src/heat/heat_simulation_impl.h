@@ -58,7 +58,8 @@ class HeatSimulation::Impl {
   heat::SurfaceHeat surface_of(const std::string& set) const;
   heat::SurfaceHeat wall_of(int region) const;
   std::map<std::uint32_t, double> shares_of_region(int region) const;
-  void add_convection(heat::SurfaceHeat surface, Place place, TimeFunction<double> coefficient, TimeFunction<double> ambient);
+  void add_convection(heat::SurfaceHeat surface, Place place, TimeFunction<double> coefficient,
+                      TimeFunction<double> ambient);
   void add_radio(RadioFrequency radio);
   bool is_hollow(int region) const;
   void add_line(const LineSource& source);

@@ -100,8 +100,8 @@ std::vector<double> covered(const GroupImage& labels, const std::vector<image::I
       const Vec3d& s = implants[m].semi_axes;
       if (norm(centre - implants[m].center) > reach + std::max({s.x, s.y, s.z})) continue;
       for (int p = 0; p < kSub * kSub * kSub; ++p) {
-        const Vec3d sub{(p % kSub + 0.5) / kSub - 0.5, (p / kSub % kSub + 0.5) / kSub - 0.5,
-                        (p / (kSub * kSub) + 0.5) / kSub - 0.5};
+        const int i = p % kSub, j = p / kSub % kSub, k = p / (kSub * kSub);
+        const Vec3d sub{(i + 0.5) / kSub - 0.5, (j + 0.5) / kSub - 0.5, (k + 0.5) / kSub - 0.5};
         const Vec3d point = grid.world(index + sub);
         const bool earlier = std::any_of(implants.begin(), implants.begin() + static_cast<std::ptrdiff_t>(m),
                                          [&](const image::Implant& other) { return other.contains(point); });

@@ -224,7 +224,8 @@ class Fields {
   }
   /// Place of a point in a cell, in voxels from its first corner.
   static std::array<double, 3> sub_point(int p) {
-    return {(p % kSub + 0.5) / kSub, (p / kSub % kSub + 0.5) / kSub, (p / (kSub * kSub) + 0.5) / kSub};
+    const int i = p % kSub, j = p / kSub % kSub, k = p / (kSub * kSub);
+    return {(i + 0.5) / kSub, (j + 0.5) / kSub, (k + 0.5) / kSub};
   }
   void count_cell(std::size_t v, std::vector<double>& volume) const {
     std::array<std::uint8_t, 8> there{};
