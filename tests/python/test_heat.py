@@ -132,3 +132,23 @@ def test_options_pickle_and_compare():
     assert pickle.loads(pickle.dumps(tissue)) == tissue
     assert tissue.death is not None and tissue.death.cold == -40.0
     assert glisson.cem43(43.0, 43.0, 60.0) == pytest.approx(1.0)
+
+
+def test_currents_and_patterns_give_their_power():
+    """A bar between electrodes takes V² σ A / L, a pattern its sum over the tets; both stand in the balance as sources."""
+    mesh = glisson.box_mesh(cells=[10, 2, 2], size=[0.1, 0.02, 0.02])
+    tissue = glisson.ThermalTissue(electric_conductivity=0.2, electric_rise=0.0)
+
+    def after(given, seconds=5.0):
+        s = glisson.HeatSimulation(mesh, tissue, glisson.HeatOptions(temperature=20.0))
+        given(s)
+        s.advance(seconds)
+        return s.ledger.sources / seconds
+
+    bar = 20.0**2 * 0.2 * 4e-4 / 0.1
+    assert abs(after(lambda s: s.add_radio("x_min", "x_max", voltage=20.0)) - bar) < 1e-6 * bar
+    assert abs(after(lambda s: s.add_radio("x_min", "x_max", power=0.5)) - 0.5) < 1e-6
+    pattern = np.full(len(mesh.tets), 1e5)
+    assert abs(after(lambda s: s.add_pattern(pattern, 1.0)) - 1e5 * 4e-5) < 1e-9
+    with pytest.raises(ValueError, match="pattern of power has 3 values"):
+        after(lambda s: s.add_pattern(pattern[:3], 1.0))
