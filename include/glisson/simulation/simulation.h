@@ -109,7 +109,7 @@ inline constexpr int kMostDragStages = 8;
 /// for one step with its lumped mass alone. With more stages the tissue would be too soft there.
 inline constexpr int kMostDragStagesBesideInstruments = 4;
 /// The same with tools in contact, whose surface of contact changes with each step, and with interactions without
-/// tell_held(): blades, a program's own.
+/// most_drag_stages() of their own: blades, a program's.
 inline constexpr int kMostDragStagesBesideOthers = 3;
 
 struct SimulationOptions {
