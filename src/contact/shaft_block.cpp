@@ -59,6 +59,13 @@ double shaft_impulse(double stop, double free, double mobility, const AxialLimit
   return std::copysign(std::min(slipping, std::abs(stop)), free);
 }
 
+/// Of the tissue at a row whose vertices are active.
+Vec3d present_velocity(const InteractionStep& step, const Row& row) {
+  Vec3d velocity{};
+  for (const VertexWeight& w : row.weights) velocity += step.vertices[step.place_of[w.vertex]].velocity * w.weight;
+  return velocity;
+}
+
 }  // namespace
 
 bool read(const InteractionStep& step, Row& row) {
@@ -176,11 +183,7 @@ void Block::take_off(const InteractionStep& step) {
   if (!is_new) {
     for (std::size_t j = 0; j < rows.size(); ++j) push(step, *rows[j], -(across[j] + direction * along[j]));
   }
-  for (std::size_t j = 0; j < rows.size(); ++j) {
-    tissue[j] = {};
-    for (const VertexWeight& w : rows[j]->weights)
-      tissue[j] += step.vertices[step.place_of[w.vertex]].velocity * w.weight;
-  }
+  for (std::size_t j = 0; j < rows.size(); ++j) tissue[j] = present_velocity(step, *rows[j]);
 }
 
 /// Impulses across: the tissue stays on the bent shaft, in all rows that are held.
@@ -211,18 +214,28 @@ void Block::count_breaks(std::span<const double> before) {
   }
 }
 
-double Block::solve(const InteractionStep& step) {
-  if (!places.empty()) take_off(step);
-  const std::vector<Vec3d> across_before = across;
-  const std::vector<double> along_before = along;
+/// Finds the impulses on tissue that has these velocities without the shaft, and pushes.
+void Block::solve_and_push(const InteractionStep& step) {
   solve_across();
   std::vector<double> speed;
   for (std::size_t j = 0; j < rows.size(); ++j) speed.push_back(dot(velocity - tissue[j], direction) - closing[j]);
   slips = solve_along(W, speed, limits, friction, h, along);
+  for (std::size_t j = 0; j < rows.size(); ++j) push(step, *rows[j], across[j] + direction * along[j]);
+}
+
+double Block::solve(const InteractionStep& step) {
+  if (places.empty()) {  // nobody else acts here: once is enough
+    solve_and_push(step);
+    is_new = false;
+    return 0.0;
+  }
+  take_off(step);
+  const std::vector<Vec3d> across_before = across;
+  const std::vector<double> along_before = along;
+  solve_and_push(step);
   count_breaks(along_before);
   double change = 0.0;
   for (std::size_t j = 0; j < rows.size(); ++j) {
-    push(step, *rows[j], across[j] + direction * along[j]);
     const auto at = static_cast<Eigen::Index>(j);
     const double more_along = is_new ? along[j] : along[j] - along_before[j];
     const Vec3d more_across = is_new ? across[j] : across[j] - across_before[j];
@@ -261,9 +274,7 @@ void Block::list_held(const InteractionStep& step, HeldRows& all) const {
   for (std::uint32_t j = 0; j < rows.size(); ++j) {
     const AxialLimit& limit = limits[j];
     if (limit.is_tip && (cuts || along[j] == 0.0)) continue;
-    Row row = *rows[j];
-    if (!read(step, row)) continue;
-    const double slip = dot(velocity - row.velocity, direction);
+    const double slip = dot(velocity - present_velocity(step, *rows[j]), direction);
     const bool yields = !limit.is_tip && std::abs(slip) > kHeldSlip * friction.stick_speed;
     const double drag =
         yields ? step.h * limit.length * (slip > 0.0 ? friction.viscous_in : friction.viscous_out) : 0.0;

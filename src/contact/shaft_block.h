@@ -116,6 +116,7 @@ struct Block {
  private:
   bool tip_cuts() const { return limits.back().is_tip && sinks.back() == WorkSink::fracture && slips.back() != 0; }
   void solve_across();
+  void solve_and_push(const InteractionStep& step);
   void take_off(const InteractionStep& step);
   void count_breaks(std::span<const double> before);
 };
