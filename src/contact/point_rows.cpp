@@ -344,7 +344,8 @@ Swept sweep(std::span<ContactRow* const> rows, const InteractionStep& step, Push
       change = std::max({change, pressed, rubbed});
       if (pressed > 0.0 || rubbed > 0.0) clock.push(places_of(row));
       // rubbing moves a point along a curved solid, and off it where supports hold some of its ways: once more then
-      if (rubbed <= enough || (alone && row.solid->traits.flat)) row.solved_at = clock.now();
+      if (rubbed <= kSolvedWithin * row.solid->tolerance() || (alone && row.solid->traits.flat))
+        row.solved_at = clock.now();
     }
     ++done.sweeps, done.change = change;
     if (change <= enough) break;

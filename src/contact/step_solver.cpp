@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 #include <limits>
 #include <tuple>
@@ -18,7 +19,8 @@ constexpr double kSoftness = 0.05;     ///< … and yield by this compliance the
 constexpr double kHelps = 0.7;         ///< a jump that leaves more of it than that has not helped
 constexpr double kFarOff = 100.0;      ///< tolerances: rows that still move by more in the last turn have not been met
 constexpr double kFarthest = 1000.0;   ///< of what a turn has changed: so far impulses are taken at once
-constexpr double kEnoughAlone = 1e-9;  ///< where there are no points: rows that move by less have been solved [m]
+constexpr double kThin = 1e-6;         ///< of the thinnest solid: rows that move by less have been solved …
+constexpr double kEnoughAlone = 1e-9;  ///< … or so much, where all are half-spaces or there are no points [m]
 constexpr double kHeldWithin = 1e-13;  ///< of where it is to end: such a vertex is held [m]
 constexpr std::uint32_t kNoTool = std::numeric_limits<std::uint32_t>::max();
 
@@ -219,8 +221,9 @@ double StepSolver::sweep_others(Island& island, const InteractionStep& step) {
 
 /// Meets all rows of an island, as far as their impulses are not bounded otherwise. @return sweeps over the points
 int StepSolver::settle(Island& island, const InteractionStep& step) {
-  double enough = island.points.empty() ? kEnoughAlone : 0.0;
-  for (const ContactRow* row : island.points) enough = std::max(enough, kSolvedWithin * row->solid->tolerance());
+  double thinnest = std::numeric_limits<double>::infinity();  // half-spaces have no thickness
+  for (const ContactRow* row : island.points) thinnest = std::min(thinnest, row->solid->traits.thickness);
+  const double enough = std::isfinite(thinnest) ? kThin * thinnest : kEnoughAlone;
   if (island.tools.size() > 1) return settle_together(island, step, enough);
   const int most = most_sweeps(island.points, step);
   const auto is_due = [&](const ContactRow* row) { return clock_.latest(places_of(*row)) > row->solved_at; };
@@ -235,7 +238,7 @@ int StepSolver::settle(Island& island, const InteractionStep& step) {
 }
 
 /// Rows of several tools in turn. Where they move each other as far in every turn, not all can be met: all yield then, each by the same
-/// part of what its impulse moves its own point, and the sum of squares of what is missed is the least. Where it becomes less by a little in
+/// part of what its impulse moves its own point, and what is missed is shared among them. Where it becomes less by a little in
 /// every turn, impulses are taken at once to where that leads [Aitken1926].
 int StepSolver::settle_together(Island& island, const InteractionStep& step, double enough) {
   double last = 0.0, at_last_look = 0.0;
