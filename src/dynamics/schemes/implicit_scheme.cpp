@@ -343,7 +343,10 @@ bool ImplicitScheme::advance(double h, double end, std::optional<Backup>& before
 
 StepResult ImplicitScheme::made() {
   ++state_.steps;
-  return {watch().inverted.empty() ? StepStatus::ok : StepStatus::inverted, watch().inverted, {}};
+  return {watch().inverted.empty() ? StepStatus::ok : StepStatus::inverted,
+          watch().inverted,
+          {},
+          solver_.contact().is_met()};
 }
 
 /// That a step was not made because its end was asked for, which has left nothing behind.
