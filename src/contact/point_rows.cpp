@@ -5,36 +5,24 @@
 #include <vector>
 
 #include "base/two_across.h"
+#include "contact/point_laws.h"
 
 namespace glisson {
 namespace {
 
 constexpr int kMostSweeps = 60;
 constexpr int kMostSweepsBetween = 45;  // with triangles, whose points are looked for up to three times
-// Friction from which on two walls at right angles can hold a point by pressing and pulling it.
-constexpr double kJams = 1.0;
-constexpr char kMostReleases = 3;  // of a row: a corner in which it is let go and wanted again in turn needs both
-constexpr int kMostCorrections = 8;
-constexpr double kAtEdge = 1e-3;  // a weight below it: the point is on an edge of its triangle
+constexpr double kAtEdge = 1e-3;        // a weight below it: the point is on an edge of its triangle
 constexpr double kAlike = 0.8;  // cosine between normals of solid and triangle that are one but for the triangle's size
 constexpr double kAway = -0.2;  // … below which they do not face each other
-constexpr int kMostProbes = 24;         // of a triangle
-constexpr double kSettling = 5e-3;      // tissue found inside a tool leaves by its depth over this time [s]
-constexpr double kFast = 0.25;          // of the thickness
-constexpr double kHeld = 2000.0;        // tolerances: a point that ends so near is where its row wants it
-constexpr double kSticks = 1.0 - 1e-9;  // of its limit: friction below it holds a point
-constexpr double kNear = 0.1;           // of its way: a point that ends so near takes part
+constexpr int kMostProbes = 24;     // of a triangle
+constexpr double kSettling = 5e-3;  // tissue found inside a tool leaves by its depth over this time [s]
+constexpr double kFast = 0.25;      // of the thickness
+constexpr double kHeld = 2000.0;    // tolerances: a point that ends so near is where its row wants it
+constexpr double kNear = 0.1;       // of its way: a point that ends so near takes part
 
 using Corners = std::array<Vec3d, 3>;
-
-/// φ with the allowance of the row taken off.
-ShapeDistance distance_of(const ContactRow& row, const Vec3d& y) {
-  ShapeDistance d = distance_to(*row.solid->shape, y);
-  d.distance += row.allowance;
-  return d;
-}
-
-double phi(const ContactRow& row, const Vec3d& y) { return distance_of(row, y).distance; }
+using point_laws::distance_of, point_laws::phi, point_laws::scaled;
 
 /// Where the vertices of a row are in the frame of the solid.
 Corners at_start(const ContactRow& row) {
@@ -70,21 +58,11 @@ double first_touch(const ContactRow& row, const Vec3d& a, const Vec3d& b) {
 /// Velocity per impulse of a point that is a mean of vertices.
 Vec3d response_of(const ContactRow& row, const InteractionStep& step) {
   Vec3d sum;
-  if (step.compliance !=
-      nullptr) {  // from above, whatever the corners give one another: (Σ w √c)² by Schwarz's inequality
-    for (std::uint32_t i = 0; i < row.count; ++i) {
-      const Vec3d c = step.compliance->mobility(row.places[i]);
-      for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += row.weights[i] * std::sqrt(c[axis]);
-    }
-    return {sum.x * sum.x, sum.y * sum.y, sum.z * sum.z};
-  }
   for (std::uint32_t i = 0; i < row.count; ++i) {
     sum += step.mobility[row.places[i]] * (row.weights[i] * row.weights[i]);
   }
   return sum;
 }
-
-Vec3d scaled(const Vec3d& a, const Vec3d& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
 
 /// Where the point of a row is held: where it starts, if it touches there, or where it enters.
 bool meets(ContactRow& row, const Vec3d& end) {
@@ -101,104 +79,6 @@ bool meets(ContactRow& row, const Vec3d& end) {
   const ShapeDistance d = distance_of(row, y);
   row.n = d.normal, row.face = y - row.n * d.distance;
   return d.distance <= reach;
-}
-
-/// Impulse along the normal that the point needs if it is to end at `level`, and no less than none.
-/// @param base  where it ends without that impulse @param way  by how much a unit impulse moves it
-double needed(const ContactRow& row, const Vec3d& base, const Vec3d& way, double per_impulse) {
-  const double close = row.solid->tolerance();
-  const double flat = (dot(row.n, row.face - base) + row.level) / per_impulse;
-  if (row.solid->holds) return flat;
-  if (flat <= 0.0 && !row.solid->traits.hollow) return 0.0;
-  double s = std::max(0.0, flat), d = phi(row, base + way * s) - row.level;
-  for (int k = 0; k < kMostCorrections && d < -close; ++k) {  // hollow: the wall rises beyond its tangent plane
-    const double next = s - d / per_impulse, further = phi(row, base + way * next) - row.level;
-    if (!(further > d)) return s;
-    s = next, d = further;
-  }
-  const double speed = norm(way);
-  for (int k = 0; k < kMostCorrections && s > 0.0 && d > close; ++k) {  // down from the tangent plane to the solid
-    s -= d / speed;
-    if (s <= 0.0) return row.fast ? std::max(0.0, flat) : 0.0;
-    d = phi(row, base + way * s) - row.level;
-  }
-  return s;
-}
-
-/// The impulse across the normal that would stop the point against the solid.
-Vec3d sticking(const ContactRow& row, const Vec3d& slip) {
-  const Vec3d &w = row.response, &n = row.normal;
-  if (w.x == w.y && w.y == w.z) return slip * (-1.0 / w.x);
-  const auto [s, t] = two_across(n);
-  double ss = dot(s, scaled(w, s)), tt = dot(t, scaled(w, t));
-  const double st = dot(s, scaled(w, t)), floor = 1e-9 * std::max({w.x, w.y, w.z});
-  // a way that supports hold altogether: friction acts there up to its limit, where it has one
-  ss += floor, tt += floor;
-  const double det = ss * tt - st * st, a = -dot(slip, s), b = -dot(slip, t);
-  Vec3d r = s * ((tt * a - st * b) / det) + t * ((ss * b - st * a) / det);
-  if (std::isinf(row.solid->friction)) {
-    for (std::size_t i = 0; i < 3; ++i) r[i] = w[i] > 0.0 ? r[i] : 0.0;
-  }
-  return r;
-}
-
-/// Speed of the point along the normal against the solid [m/s]; the solid's is that of its own point where the row's starts.
-double speed_off(const ContactRow& row, const InteractionStep& step) {
-  Vec3d v;
-  for (std::uint32_t i = 0; i < row.count; ++i) v += step.vertices[row.places[i]].velocity * row.weights[i];
-  return dot(row.normal, v - row.carried);
-}
-
-/// @return by how much the point was moved [m]
-double rub(ContactRow& row, const InteractionStep& step) {
-  const double limit = row.pressing > 0.0 ? row.solid->friction * row.pressing : 0.0;
-  if (limit == 0.0 && row.rubbing == Vec3d{}) return 0.0;
-  const Vec3d drift = row.solid->after.axes * (end_of(row, step) - row.start) * (1.0 / step.h);
-  const Vec3d undone = drift - scaled(row.response, row.rubbing);
-  Vec3d wanted = sticking(row, undone - row.normal * dot(undone, row.normal));
-  if (row.softness > 0.0) wanted *= 1.0 / (1.0 + row.softness);
-  const double size = norm(wanted);
-  if (size > limit) wanted *= limit / size;
-  const Vec3d change = wanted - row.rubbing;
-  row.rubbing = wanted;
-  push(row, step, change);
-  return norm(scaled(row.response, change)) * step.h;
-}
-
-double press(ContactRow& row, const InteractionStep& step) {
-  const Vec3d way = transposed(row.solid->after.axes) * scaled(row.response, row.normal) * step.h;
-  const double per_impulse = row.along * step.h;
-  double wanted = needed(row, end_of(row, step) - way * row.pressing, way, per_impulse);
-  if (row.softness > 0.0) wanted /= 1.0 + row.softness;
-  if (row.most) wanted = std::min(wanted, std::max(0.0, row.pressing + (*row.most - speed_off(row, step)) / row.along));
-  const double change = wanted - row.pressing;
-  row.pressing = wanted;
-  if (change != 0.0) push(row, step, row.normal * change);
-  return std::abs(change) * per_impulse;
-}
-
-/// Takes a bonded point to where it is held. @return by how much it was moved [m]
-double hold(ContactRow& row, const InteractionStep& step) {
-  const Vec3d off = row.solid->after.axes * (row.face - end_of(row, step)) * (1.0 / step.h), &w = row.response;
-  const Vec3d change{w.x > 0.0 ? off.x / w.x : 0.0, w.y > 0.0 ? off.y / w.y : 0.0, w.z > 0.0 ? off.z / w.z : 0.0};
-  row.take(row.impulse() + change);
-  push(row, step, change);
-  return norm(scaled(w, change)) * step.h;
-}
-
-/// Whether friction holds the point with something to spare.
-bool sticks(const ContactRow& row) {
-  return row.pressing > 0.0 && row.solid->friction > 0.0 &&
-         norm(row.rubbing) < kSticks * row.solid->friction * row.pressing;
-}
-
-/// Takes off what the row exerts. @return by how much the point was moved [m]
-double release(ContactRow& row, const InteractionStep& step) {
-  const Vec3d impulse = row.impulse();
-  if (impulse == Vec3d{}) return 0.0;
-  push(row, step, -impulse);
-  row.pressing = 0.0, row.rubbing = {};
-  return norm(scaled(row.response, impulse)) * step.h;
 }
 
 /// The point of a triangle nearest to the centre of a ball: by the regions of corners, edges and face.
@@ -259,7 +139,7 @@ void list_held(const ContactRow& row, const InteractionStep& step, HeldRows& hel
   }
   const std::uint32_t point = held.add_mean(std::span(corners).first(row.count));
   held.add_row(point, row.normal);
-  if (!sticks(row)) return;
+  if (!point_laws::sticks(row)) return;
   const Vec3d way = end - row.start;
   if (norm(way - row.n * dot(way, row.n)) > close) return;
   for (const Vec3d& e : two_across(row.normal)) held.add_row(point, e);
@@ -289,7 +169,7 @@ bool prepare(ContactRow& row, const InteractionStep& step) {
   row.along = dot(row.normal, scaled(row.response, row.normal));
   row.level = -std::max(0.0, row.inside - step.h * std::min(row.solid->push_out_speed, row.inside / kSettling));
   // in a long step other points of a triangle come to be its deepest: pushed out, they would bring energy in
-  if (step.compliance != nullptr && row.count == 3) row.level = -row.inside;
+  if (step.is_long && row.count == 3) row.level = -row.inside;
   const ContactSolid& solid = *row.solid;
   row.carried = (solid.after.to_space(row.start) - row.origin) * (1.0 / step.h);
   row.carried_before = row.carried;
@@ -310,37 +190,46 @@ void prepare_bond(ContactRow& row, const Vec3d& anchor, const InteractionStep& s
   row.response = response_of(row, step);
 }
 
-int most_sweeps(std::span<ContactRow* const> rows, const InteractionStep& step) {
-  if (step.compliance != nullptr) return kMostLongSweeps;
+int most_sweeps(std::span<ContactRow* const> rows) {
   const bool between = !rows.empty() && rows.back()->count == 3;  // triangles come last
   return between ? kMostSweepsBetween : kMostSweeps;
 }
 
+namespace {
+
+/// Rows of a short step: a vertex is moved by what pushes it alone.
+struct ShortMoves {
+  const InteractionStep& step;
+
+  double h() const { return step.h; }
+  Vec3d end(const ContactRow& row) const { return end_of(row, step); }
+  Vec3d velocity(const ContactRow& row) const {
+    Vec3d v;
+    for (std::uint32_t i = 0; i < row.count; ++i) v += step.vertices[row.places[i]].velocity * row.weights[i];
+    return v;
+  }
+  static Vec3d own(const ContactRow& row, const Vec3d& impulse) { return scaled(row.response, impulse); }
+  void push(const ContactRow& row, const Vec3d& impulse) const { glisson::push(row, step, impulse); }
+};
+
+}  // namespace
+
 Swept sweep(std::span<ContactRow* const> rows, const InteractionStep& step, PushClock& clock, int most) {
   double enough = 0.0;
   for (const ContactRow* row : rows) enough = std::max(enough, kSolvedWithin * row->solid->tolerance());
-  const bool is_long = step.compliance != nullptr;
-  // A vertex in a corner that sticks to one wall needs nothing of another: they could only press and pull it against each other, as
-  // far as they happen to. In a short step the first one's impulse leaves the other nothing to do.
-  std::vector<std::size_t> holder(is_long ? step.vertices.size() : 0, rows.size());
-  std::vector<char> releases(is_long ? rows.size() : 0, 0);
+  const ShortMoves moves{step};
   Swept done;
   while (done.sweeps < most) {
     double change = 0.0;
-    for (std::size_t k = 0; k < rows.size(); ++k) {
-      ContactRow& row = *rows[k];
-      if (!is_long && clock.latest(places_of(row)) <= row.solved_at) continue;
+    for (ContactRow* at : rows) {
+      ContactRow& row = *at;
+      if (clock.latest(places_of(row)) <= row.solved_at) continue;
       const bool alone = row.response.x == row.response.y && row.response.y == row.response.z;
       if (row.bonded) {
-        change = std::max(change, hold(row, step));
+        change = std::max(change, point_laws::hold(row, moves));
         continue;
       }
-      const bool vertex = is_long && row.count == 1 && row.solid->friction >= kJams;
-      const std::size_t by = vertex ? holder[row.places[0]] : rows.size();
-      const bool spare = by < rows.size() && by != k && releases[k] < kMostReleases;
-      if (spare && row.impulse() != Vec3d{}) ++releases[k];
-      const double pressed = spare ? release(row, step) : press(row, step), rubbed = spare ? 0.0 : rub(row, step);
-      if (vertex && !spare) holder[row.places[0]] = sticks(row) ? k : rows.size();
+      const double pressed = point_laws::press(row, moves), rubbed = point_laws::rub(row, moves);
       change = std::max({change, pressed, rubbed});
       if (pressed > 0.0 || rubbed > 0.0) clock.push(places_of(row));
       // rubbing moves a point along a curved solid, and off it where supports hold some of its ways: once more then
@@ -351,6 +240,12 @@ Swept sweep(std::span<ContactRow* const> rows, const InteractionStep& step, Push
     if (change <= enough) break;
   }
   return done;
+}
+
+double most_missed(std::span<ContactRow* const> rows, const InteractionStep& step) {
+  double most = 0.0;
+  for (const ContactRow* row : rows) most = std::max(most, point_laws::missed(*row, ShortMoves{step}));
+  return most;
 }
 
 std::array<double, 3> deepest(const Shape& shape, const std::array<Vec3d, 3>& corners, double& depth) {

@@ -19,13 +19,12 @@
 
 #include "contact/push_clock.h"
 #include "contact/shape_traits.h"
+#include "contact/tool_yield.h"
 #include "glisson/pose.h"
 #include "glisson/simulation/interaction.h"
 
 namespace glisson {
 
-/// Sweeps of a long step at most: all points move one another there.
-inline constexpr int kMostLongSweeps = 1000;
 inline constexpr double kSolvedWithin = 1000.0;  ///< tolerances: rows that move by less have been solved
 
 /// A rigid solid during a step.
@@ -40,6 +39,7 @@ struct ContactSolid {
   bool still = false;            ///< it never moves
   bool holds = false;            ///< what touches does not lift off …
   double grip = 0.0;             ///< … and touches where it is no farther than this [m]
+  ToolYield* yields = nullptr;   ///< in a long step, where a force moves it
   /// Distance that counts as none [m].
   double tolerance() const;
   /// Of its material at a point of space, in this step and the last, 0 in the first [m/s]. @param h  of this step
@@ -64,8 +64,8 @@ struct ContactRow {
   double level = 0.0;      ///< φ asked for at the end [m], ≤ 0: less than 0 where the point was inside already
   bool bonded = false;     ///< it is held at `face`, pulled or pressed
   bool fast = false;       ///< it passes through more than a part of the solid in this step
-  Vec3d response;          ///< velocity per impulse at the point, per component [1/kg]
-  double along = 0.0;      ///< n·response·n
+  Vec3d response;          ///< velocity per impulse at the point, per component; in a long step at most [1/kg]
+  double along = 0.0;      ///< the same along n [1/kg]
   Vec3d carried, carried_before;  ///< velocity of the solid where the point starts, in this step and the last [m/s]
   std::optional<double> most;     ///< speed off the solid that it may get at most [m/s]
 
@@ -74,6 +74,8 @@ struct ContactRow {
   Vec3d rubbing{};  ///< impulse across it
   double softness = 0.0;  ///< compliance over the point's own: above 0 where rows cannot all be met
   bool is_new = true;     ///< the solver has not pushed it yet
+  std::size_t tool = 0;   ///< among those of the step
+  std::size_t port = 0;   ///< its number in a long step (coupled_rows.h)
   PushClock::Time solved_at = 0;
 
   Vec3d impulse() const { return normal * pressing + rubbing; }
@@ -103,7 +105,10 @@ struct Swept {
 /// Solves for all impulses in sweeps, and pushes. @param most  sweeps at most
 Swept sweep(std::span<ContactRow* const> rows, const InteractionStep& step, PushClock& clock, int most);
 /// Sweeps at most over rows of a single tool.
-int most_sweeps(std::span<ContactRow* const> rows, const InteractionStep& step);
+int most_sweeps(std::span<ContactRow* const> rows);
+
+/// By how much a point ends elsewhere than its row wants it, at most [m].
+double most_missed(std::span<ContactRow* const> rows, const InteractionStep& step);
 
 /// Gives the point an impulse [N s].
 void push(const ContactRow& row, const InteractionStep& step, const Vec3d& impulse);

@@ -12,8 +12,8 @@ void RowGroup::clear() {
   points.clear(), holds.clear(), discs.clear(), pushes.clear();
   walls.clear(), pressed.clear();
   shaft.reset();
-  account = nullptr;
-  has_impulses = others_act = corrected = false;
+  account = nullptr, yields = nullptr;
+  others_act = corrected = false;
   sweeps = last_sweeps = 0;
 }
 

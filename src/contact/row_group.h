@@ -42,6 +42,8 @@ struct DiscRow {
   std::array<ToolVelocity, 4> tool{};  ///< at each vertex, for the ledger
   Vec3d impulse{};                     ///< [N s]
   PushClock::Time solved_at = 0;
+  Vec3d last{};                 ///< what it was given in the last step, in a long step [N s]
+  ToolYield* yields = nullptr;  ///< the tool, where a force moves it in a long step
 };
 
 /// An impulse that is given [N s].
@@ -61,8 +63,8 @@ struct RowGroup {
   std::vector<std::optional<std::size_t>>
       pressed;                      ///< per call of it: the row among the points; none: it did not come near
   WorkAccount* account = nullptr;   ///< of the points
+  ToolYield* yields = nullptr;      ///< in a long step, where a force moves the tool
   std::vector<ContactRow> earlier;  ///< points before clear()
-  bool has_impulses = false;        ///< in a long step: the points have their impulses already, and are not solved for
 
   bool others_act =
       false;  ///< other tools push the same vertices, or solids act and it has no rows yet: what they push may come into reach

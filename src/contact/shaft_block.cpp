@@ -204,7 +204,6 @@ void Block::solve_across() {
   }
 }
 
-/// A row that holds more than it would in slip, and gives way, in turn: from some times on it slips.
 void Block::count_breaks(std::span<const double> before) {
   breaks.resize(rows.size(), 0);
   for (std::size_t j = 0; j < rows.size() && !is_new; ++j) {
@@ -245,12 +244,12 @@ double Block::solve(const InteractionStep& step) {
   return change;
 }
 
-void Block::book(const InteractionStep& step) const {
+void Block::book(const InteractionStep& step, const ToolVelocity& shaft) const {
   for (std::size_t j = 0; j < rows.size(); ++j) {
     for (const VertexWeight& w : rows[j]->weights) {
       const std::uint32_t place = step.place_of[w.vertex];
-      step.book(sinks[j], place, direction * (along[j] * w.weight), tool);
-      step.book(WorkSink::contact, place, across[j] * w.weight, tool);
+      step.book(sinks[j], place, direction * (along[j] * w.weight), shaft);
+      step.book(WorkSink::contact, place, across[j] * w.weight, shaft);
     }
   }
 }
@@ -275,12 +274,12 @@ void Block::list_held(const InteractionStep& step, HeldRows& all) const {
     const AxialLimit& limit = limits[j];
     if (limit.is_tip && (cuts || along[j] == 0.0)) continue;
     const double slip = dot(velocity - present_velocity(step, *rows[j]), direction);
-    const bool yields = !limit.is_tip && std::abs(slip) > kHeldSlip * friction.stick_speed;
+    const bool slides = !limit.is_tip && std::abs(slip) > kHeldSlip * friction.stick_speed;
     const double drag =
-        yields ? step.h * limit.length * (slip > 0.0 ? friction.viscous_in : friction.viscous_out) : 0.0;
-    if (yields && !(drag > 0.0)) continue;
+        slides ? step.h * limit.length * (slip > 0.0 ? friction.viscous_in : friction.viscous_out) : 0.0;
+    if (slides && !(drag > 0.0)) continue;
     all.add_row(first + j, direction);
-    all.end_group(std::array{yields ? 1.0 / drag : slack});
+    all.end_group(std::array{slides ? 1.0 / drag : slack});
   }
 }
 

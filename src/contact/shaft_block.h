@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "contact/push_clock.h"
+#include "contact/tool_yield.h"
 #include "glisson/contact/shaft_friction.h"
 #include "glisson/simulation/interaction.h"
 
@@ -84,9 +85,10 @@ struct Block {
   std::vector<const Row*> rows{};
   std::vector<WorkSink> sinks{};  ///< per row: of what acts along
   std::size_t held = 0;           ///< so many, the first ones, stay on the shaft across it
-  Eigen::MatrixXd W{};            ///< of all [1/kg]
+  Eigen::MatrixXd W{};            ///< of all, in a short step [1/kg]
   Eigen::MatrixXd compliance{};   ///< c of all: of the bent shaft [1/kg] …
   double slack = 0.0;             ///< … and beside it, on the diagonal of those held [1/kg]
+  double slack_share = 0.0;       ///< in a long step the same over the mean of W across
   std::vector<Vec3d> off{};       ///< per held row: what the step is to make up for beside velocities [m] …
   std::vector<Vec3d> more{};      ///< … and what impulses across that are given add to it [m]
   std::vector<double> closing{};  ///< per row: speed that the tissue may have against the shaft [m/s]
@@ -102,13 +104,18 @@ struct Block {
   std::vector<std::uint32_t> places{};  ///< that its rows move, each once; filled where other tools act on some of them
   bool is_new = true;                   ///< not solved yet
   PushClock::Time solved_at = 0;
+  ToolYield* yields = nullptr;  ///< in a long step, where a force moves the shaft
 
   /// Takes in rows that were read.
   void add(const Row& row);
   /// Finds the impulses, and pushes. @return by how much it moved a row at most [m]
   double solve(const InteractionStep& step);
   void find_places(const InteractionStep& step);
-  void book(const InteractionStep& step) const;
+  /// A row that holds more than it would in slip, and gives way, in turn with other tools: from some times on it slips.
+  /// @param before  impulses along of the last solve [N s]
+  void count_breaks(std::span<const double> before);
+  /// @param shaft  its velocity
+  void book(const InteractionStep& step, const ToolVelocity& shaft) const;
   /// Across, tissue that is held bends the shaft: c, and what the solve adds. Along, a row that sticks; and the viscous part of the
   /// friction of one that slips, c = 1/drag. A tip that cuts holds nothing.
   void list_held(const InteractionStep& step, HeldRows& held) const;
@@ -118,7 +125,6 @@ struct Block {
   void solve_across();
   void solve_and_push(const InteractionStep& step);
   void take_off(const InteractionStep& step);
-  void count_breaks(std::span<const double> before);
 };
 
 }  // namespace glisson::shaft

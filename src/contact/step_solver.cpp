@@ -1,5 +1,7 @@
 #include "contact/step_solver.h"
 
+#include "contact/coupled_rows.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,16 +13,15 @@ namespace glisson {
 namespace {
 
 constexpr int kMostRounds = 12;        ///< of declaring rows in a step
+constexpr int kMostLongSweeps = 1000;  ///< of a round in a long step
 constexpr int kMostTurns = 400;        ///< of the laws of an island
 constexpr int kLook = 20;              ///< after so many of several tools it is looked at …
 constexpr double kStalls = 1e-5;       ///< … whether rows move as far as a turn before, but for this share …
-constexpr double kStallsLong = 1e-3;   ///< … and as far as when it was looked at last …
-constexpr double kSoftness = 0.05;     ///< … and yield by this compliance then, over a point's own
+constexpr double kStallsSince = 1e-3;  ///< … and as far as when it was looked at last
+constexpr double kFarOff =
+    20.0;  ///< tolerances: rows that miss their places by more after the last turn have not been met
 constexpr double kHelps = 0.7;         ///< a jump that leaves more of it than that has not helped
-constexpr double kFarOff = 100.0;      ///< tolerances: rows that still move by more in the last turn have not been met
 constexpr double kFarthest = 1000.0;   ///< of what a turn has changed: so far impulses are taken at once
-constexpr double kThin = 1e-6;         ///< of the thinnest solid: rows that move by less have been solved …
-constexpr double kEnoughAlone = 1e-9;  ///< … or so much, where all are half-spaces or there are no points [m]
 constexpr double kHeldWithin = 1e-13;  ///< of where it is to end: such a vertex is held [m]
 constexpr std::uint32_t kNoTool = std::numeric_limits<std::uint32_t>::max();
 
@@ -46,15 +47,46 @@ auto key_of(const shaft::Block& block) {
 ToolVelocity tool_velocity(const ContactRow& row, const InteractionStep& step) {
   const ContactSolid& solid = *row.solid;
   if (solid.still) return {};
-  if (step.compliance == nullptr) return solid.velocity_at(row.origin, step.h);
-  const Vec3d own = end_of(row, step), x = solid.after.to_space(own);
-  const Vec3d velocity = (x - solid.before.to_space(own)) * (1.0 / step.h);
+  if (!step.is_long) return solid.velocity_at(row.origin, step.h);
+  Pose after = solid.after;
+  if (solid.yields != nullptr) after.position += solid.yields->shift;
+  Vec3d x = row.origin;
+  for (std::uint32_t i = 0; i < row.count; ++i) {
+    x += step.vertices[row.places[i]].velocity * (row.weights[i] * step.h);
+  }
+  const Vec3d velocity = (x - solid.before.to_space(after.to_own(x))) * (1.0 / step.h);
   return {velocity, velocity};
+}
+
+/// The same of a tool without rows of points. @param yields  as in its rows
+ToolVelocity with_shift(ToolVelocity tool, const ToolYield* yields, double h) {
+  if (yields == nullptr) return tool;
+  const Vec3d more = yields->shift * (1.0 / h);
+  return {tool.before + more, tool.after + more};
 }
 
 template <class Row>
 void sort_rows(std::vector<Row*>& rows) {
   std::stable_sort(rows.begin(), rows.end(), [](const Row* a, const Row* b) { return key_of(*a) < key_of(*b); });
+}
+
+/// Rows of points by their places, and there by tools; those of one tool at one place stay in its order, as of a vertex in the corner of a
+/// container, where it decides what each wall bears.
+void sort_points(std::vector<ContactRow*>& rows) {
+  const auto place_of = [](const ContactRow* row) { return std::tie(row->count, row->places, row->weights); };
+  std::stable_sort(rows.begin(), rows.end(), [&](const auto* a, const auto* b) { return place_of(a) < place_of(b); });
+  for (auto first = rows.begin(), end = first; first != rows.end(); first = end) {
+    end = std::find_if(first, rows.end(), [&](const auto* row) { return place_of(row) != place_of(*first); });
+    if (end - first == 1) continue;
+    const auto least = [&](const ContactRow* row) {  // of its tool here
+      auto least_key = key_of(*row);
+      for (auto other = first; other != end; ++other) {
+        if ((*other)->tool == row->tool) least_key = std::min(least_key, key_of(**other));
+      }
+      return least_key;
+    };
+    std::stable_sort(first, end, [&](const auto* a, const auto* b) { return least(a) < least(b); });
+  }
 }
 
 template <class Do>
@@ -150,14 +182,15 @@ void StepSolver::gather(Island& island, const InteractionStep& step) {
   island.points.clear(), island.discs.clear(), island.shafts.clear(), island.holds.clear(), island.pushes.clear();
   for (const std::size_t k : island.tools) {
     RowGroup& rows = group(k);
-    for (ContactRow& row : rows.points) island.points.push_back(&row);
+    for (ContactRow& row : rows.points) row.tool = k, island.points.push_back(&row);
     for (DiscRow& row : rows.discs) island.discs.push_back(&row);
     for (HoldRow& row : rows.holds) island.holds.push_back(&row);
     for (GivenRow& row : rows.pushes) island.pushes.push_back(&row);
     if (rows.shaft && !rows.shaft->rows.empty()) island.shafts.push_back(&*rows.shaft);
   }
   if (island.tools.size() == 1) return;
-  sort_rows(island.points), sort_rows(island.discs), sort_rows(island.shafts), sort_rows(island.pushes);
+  sort_points(island.points);
+  sort_rows(island.discs), sort_rows(island.shafts), sort_rows(island.pushes);
   for (shaft::Block* block : island.shafts) block->find_places(step);
   join_holds(island);
 }
@@ -221,11 +254,9 @@ double StepSolver::sweep_others(Island& island, const InteractionStep& step) {
 
 /// Meets all rows of an island, as far as their impulses are not bounded otherwise. @return sweeps over the points
 int StepSolver::settle(Island& island, const InteractionStep& step) {
-  double thinnest = std::numeric_limits<double>::infinity();  // half-spaces have no thickness
-  for (const ContactRow* row : island.points) thinnest = std::min(thinnest, row->solid->traits.thickness);
-  const double enough = std::isfinite(thinnest) ? kThin * thinnest : kEnoughAlone;
+  const double enough = island.enough();
   if (island.tools.size() > 1) return settle_together(island, step, enough);
-  const int most = most_sweeps(island.points, step);
+  const int most = most_sweeps(island.points);
   const auto is_due = [&](const ContactRow* row) { return clock_.latest(places_of(*row)) > row->solved_at; };
   int sweeps = 0;
   for (int turn = 0; turn < kMostTurns; ++turn) {
@@ -257,19 +288,29 @@ int StepSolver::settle_together(Island& island, const InteractionStep& step, dou
     const double ratio = change / last;
     last = change;
     if (!looks) continue;
-    const bool stalls = std::abs(1.0 - ratio) < kStalls && std::abs(1.0 - at_last_look / change) < kStallsLong;
+    const bool stalls = std::abs(1.0 - ratio) < kStalls && std::abs(1.0 - at_last_look / change) < kStallsSince;
     const bool may_jump =
         at_last_look == 0.0 || change < kHelps * at_last_look;  // the last jump has led nowhere: on in turns
     at_last_look = change;
     if (!is_soft && stalls && can_yield) {
-      soften(island);
+      island.soften();
       is_soft = is_unmet_ = true;
     } else if (may_jump && ratio < 1.0) {
       go_further(island, before, std::min(ratio / (1.0 - ratio), kFarthest), step);
     }
   }
-  is_unmet_ = is_unmet_ || last > kFarOff * enough;
+  is_unmet_ = is_unmet_ || most_missed(island, step) > island.may_miss();
   return kMostTurns;
+}
+
+/// By how much a row ends elsewhere than it wants to [m].
+double StepSolver::most_missed(const Island& island, const InteractionStep& step) {
+  double most = glisson::most_missed(island.points, step);
+  for (const HoldRow* row : island.holds) {
+    const Vec3d off = row->velocity - step.vertices[row->place].velocity, &a = step.mobility[row->place];
+    for (std::size_t i = 0; i < 3; ++i) most = std::max(most, a[i] > 0.0 ? std::abs(off[i]) * step.h : 0.0);
+  }
+  return most;
 }
 
 /// Takes impulses of the points further by so much of what the last turn has changed, as far as their laws go.
@@ -286,11 +327,6 @@ void StepSolver::go_further(Island& island, std::span<const Vec3d> before, doubl
     clock_.push(places_of(row));
     row.solved_at = 0;
   }
-}
-
-void StepSolver::soften(Island& island) {
-  for (ContactRow* row : island.points) row->softness = kSoftness, row->solved_at = 0;
-  for (HoldRow* row : island.holds) row->softness = kSoftness, row->solved_at = 0;
 }
 
 /// Rows that give the body more than their tool's contact has taken from it are solved for anew, and then made smaller.
@@ -340,28 +376,49 @@ void StepSolver::solve(Tools tools, const InteractionStep& step) {
   for (std::size_t k = 0; k < tools.size(); ++k) tools[k]->solved(step, rows_[k]);
 }
 
-void StepSolver::solve_alone(Tools tools, std::size_t tool, const InteractionStep& step) {
+int StepSolver::solve_coupled(Tools tools, const InteractionStep& step, StepMobility& mobility, int most) {
   fit(tools.size());
-  clock_.fit(step.vertices.size());
-  RowGroup& rows = group(tool);
-  rows.clear();
-  Island island;
-  island.tools = {tool};
-  for (int round = 0; round < kMostRounds; ++round) {
-    const std::size_t known = rows.size();
-    tools[tool]->declare(step, rows_[tool], round);
-    if (rows.size() == known) break;
-    gather(island, step);
-    begin_rows(island, step);
-    if (!rows.has_impulses) {
-      rows.last_sweeps = sweep(island.points, step, clock_, most_sweeps(island.points, step)).sweeps;
-      rows.sweeps += rows.last_sweeps;
+  is_unmet_ = false, has_settled_ = true;
+  if (islands_.empty()) islands_.emplace_back();
+  Island& all = islands_.front();
+  all.tools.clear(), island_count_ = 1;
+  std::vector<Vec3d> free;
+  for (const ActiveVertex& w : step.vertices) free.push_back(w.velocity);
+  const auto for_yields = [&](const auto& act) {
+    for (std::size_t k = 0; k < tools.size(); ++k) {
+      if (group(k).yields != nullptr) act(*group(k).yields);
     }
-    step.compliance->settle(step.vertices);
-    if (rows.has_impulses) break;
+  };
+  int sweeps = 0;
+  for (int round = 0; round < kMostRounds && declare(tools, step, round) && sweeps < most; ++round) {
+    all.tools.clear();
+    for (std::size_t k = 0; k < tools.size(); ++k) {
+      if (group(k).size() > 0) all.tools.push_back(k);
+    }
+    gather(all, step);
+    CoupledRows rows(all, step, mobility, free);
+    const CoupledRows::Outcome outcome = rows.solve(std::min(most - sweeps, kMostLongSweeps));
+    sweeps += outcome.sweeps;
+    is_unmet_ = outcome.unmet, has_settled_ = outcome.settled;
+    for_yields([](ToolYield& tool) { tool.begin(); });
+    rows.finish(step.impulses);
+    for_yields([](ToolYield& tool) { tool.end(); });
+    mobility.set_velocities(step.impulses, step.vertices);
+    if (!all.joint.empty()) share_out(all);
+    for (const std::size_t k : all.tools) group(k).last_sweeps = outcome.sweeps, group(k).sweeps += outcome.sweeps;
+    if (mobility.stops()) break;
   }
-  if (step.interface_book != nullptr) book(rows, step);
-  tools[tool]->solved(step, rows_[tool]);
+  if (all.tools.empty()) for_yields([](ToolYield& tool) { tool.begin(), tool.end(); });
+  book(step);
+  for (std::size_t k = 0; k < tools.size(); ++k) tools[k]->solved(step, rows_[k]);
+  return sweeps;
+}
+
+bool StepSolver::moves_on(double share) const {
+  return std::any_of(rows_.begin(), rows_.end(), [share](const StepRows& rows) {
+    const ToolYield* tool = rows.group().yields;
+    return tool != nullptr && tool->moves_on(share);
+  });
 }
 
 /// Records the impulses of a tool in the energy ledger.
@@ -376,10 +433,11 @@ void StepSolver::book(const RowGroup& rows, const InteractionStep& step) const {
   }
   for (const DiscRow& row : rows.discs) {
     for (std::size_t c = 0; c < 4; ++c) {
-      step.book(WorkSink::fracture, row.places[c], row.impulse * row.weights[c], row.tool[c]);
+      step.book(WorkSink::fracture, row.places[c], row.impulse * row.weights[c],
+                with_shift(row.tool[c], row.yields, step.h));
     }
   }
-  if (rows.shaft) rows.shaft->book(step);
+  if (rows.shaft) rows.shaft->book(step, with_shift(rows.shaft->tool, rows.shaft->yields, step.h));
   for (const HoldRow& row : rows.holds) {
     if (row.tool) step.book(WorkSink::contact, row.place, row.impulse, *row.tool);
   }

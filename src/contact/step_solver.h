@@ -5,7 +5,8 @@
 //
 // An island is tools whose rows share vertices: tools apart from each other are solved for apart. In an island rows are sorted by
 // what they are of, never by the order in which tools were attached, and solved in turn (projected Gauss–Seidel), blocks at once. A
-// row whose vertices have not moved since it was solved is not looked at.
+// row whose vertices have not moved since it was solved is not looked at. In a long step all tools are one island, and its rows are
+// solved among themselves (coupled_rows.h).
 #pragma once
 
 #include <cstdint>
@@ -14,8 +15,9 @@
 #include <utility>
 #include <vector>
 
+#include "contact/island.h"
 #include "contact/push_clock.h"
-#include "contact/row_group.h"
+#include "contact/step_mobility.h"
 #include "glisson/simulation/interaction.h"
 
 namespace glisson {
@@ -28,27 +30,18 @@ class StepSolver {
   void begin(const InteractionStep& step);
   /// Asks all tools for their rows, meets them, and hands the impulses back.
   void solve(Tools tools, const InteractionStep& step);
-  /// The same for a single tool, in a long step.
-  void solve_alone(Tools tools, std::size_t tool, const InteractionStep& step);
+  /// The same in a long step, where all vertices move one another. @param most  sweeps over the rows @return sweeps that it took
+  int solve_coupled(Tools tools, const InteractionStep& step, StepMobility& mobility, int most);
   /// Adds what the rows of this step hold.
   void list_held(const InteractionStep& step, HeldRows& held) const;
   /// Whether some rows of this step could not be met, as those of two walls that close on a vertex.
   bool is_unmet() const { return is_unmet_; }
+  /// Whether a tool that a force moves ends elsewhere than its rows were declared for. @param share  as ToolYield::moves_on
+  bool moves_on(double share) const;
+  /// Whether the impulses of a long step no longer changed at the end.
+  bool has_settled() const { return has_settled_; }
 
  private:
-  /// Rows of tools that share vertices, in the order in which they are solved.
-  struct Island {
-    std::vector<std::size_t> tools;
-    std::vector<ContactRow*> points;
-    std::vector<DiscRow*> discs;
-    std::vector<shaft::Block*> shafts;
-    std::vector<GivenRow*> pushes;
-    std::vector<HoldRow*> holds;  ///< one per place
-    std::vector<std::pair<HoldRow*, std::uint32_t>>
-        given_by;  ///< all of several tools, and of which of `holds` each is a part
-    std::vector<HoldRow> joint;
-  };
-
   void fit(std::size_t tools);
   RowGroup& group(std::size_t tool) { return rows_[tool].group(); }
   bool declare(Tools tools, const InteractionStep& step, int round);
@@ -62,8 +55,8 @@ class StepSolver {
   int settle(Island& island, const InteractionStep& step);
   int settle_together(Island& island, const InteractionStep& step, double enough);
   void go_further(Island& island, std::span<const Vec3d> before, double share, const InteractionStep& step);
-  void soften(Island& island);
   double sweep_others(Island& island, const InteractionStep& step);
+  static double most_missed(const Island& island, const InteractionStep& step);
   void share_out(Island& island);
   void book(const RowGroup& rows, const InteractionStep& step) const;
   void book(const InteractionStep& step);
@@ -77,7 +70,7 @@ class StepSolver {
   std::vector<std::uint32_t> merged_;  ///< per tool: the first of its island, or one nearer to it
   PushClock clock_;
   std::vector<InterfaceBook> books_;  ///< of each tool that acts
-  bool is_unmet_ = false;
+  bool is_unmet_ = false, has_settled_ = true;
 };
 
 }  // namespace glisson

@@ -12,6 +12,8 @@
 namespace glisson {
 namespace {
 
+constexpr std::size_t kElementsATask = 128;
+
 /// Adds f_a = −V P s_a to the four vertices.
 void scatter(const Body& body, std::size_t e, const Mat3d& P, std::span<Vec3d> force) {
   const Tet& t = body.elements[e];
@@ -35,7 +37,20 @@ void make_semidefinite(ElementTangent& C) {
   C = V * solver.eigenvalues().cwiseMax(0.0).asDiagonal() * V.transpose();
 }
 
-TissueOperator::TissueOperator(const Body& body, StepKind step) : body_(body), step_(step) { body_changed(); }
+TissueOperator::TissueOperator(const Body& body, StepKind step, int threads)
+    : body_(body), step_(step), pool_(std::make_unique<detail::TaskPool>(threads)) {
+  body_changed();
+}
+
+/// Does the same to elements that do not know of each other, some at a time.
+void TissueOperator::for_elements(std::size_t begin, std::size_t end,
+                                  const std::function<void(std::size_t)>& act) const {
+  const std::size_t tasks = (end - begin + kElementsATask - 1) / kElementsATask;
+  pool_->run(tasks, [&](std::size_t task, std::size_t) {
+    const std::size_t first = begin + task * kElementsATask, last = std::min(end, first + kElementsATask);
+    for (std::size_t e = first; e < last; ++e) act(e);
+  });
+}
 
 void TissueOperator::body_changed() {
   responses_.clear();
@@ -124,26 +139,42 @@ void TissueOperator::forces(const TissueState& state, std::span<Vec3d> elastic, 
   std::fill(viscous.begin(), viscous.end(), Vec3d{});
   watch.reset(body_.blocks.size());
   const std::vector<double> mean = mean_volume_change(state.u);
+  std::vector<Exerted> exerted(body_.elements.size());
   for (std::size_t b = 0; b < body_.blocks.size(); ++b) {
     const TissueBlock& block = body_.blocks[b];
-    const Response& response = responses_[b];
     const bool dashpot = block.tissue.viscosity > 0.0, branches = !block.tissue.maxwell.empty();
     const bool shared = block.tissue.volume_change == VolumeChange::average_nodal;
+    for_elements(block.begin, block.end,
+                 [&](std::size_t e) { exerted[e] = exerted_by(b, e, state, shared ? &mean[e] : nullptr); });
     for (std::size_t e = block.begin; e < block.end; ++e) {
-      const Mat3d H = element_gradient(body_, e, state.u);
-      if (!(jacobian(H) > 0.0)) watch.inverted.push_back(body_.mesh_tet[e]);
-      Mat3d P = response.elastic(H, shapes_[e], shared ? &mean[e] : nullptr);
-      if (dashpot) scatter(body_, e, response.viscous(H, element_gradient(body_, e, state.v)), viscous);
-      if (branches) {
-        const Sym3<double> S = response.relaxing(H, P);
-        scatter(body_, e, response.carry(H, overstress(b, e, state.since, H, S)), viscous);
-        P = sum(P, response.carry(H, S * -response.relaxing_share()));
-      }
-      scatter(body_, e, P, elastic);
-      const Stiffening stiff = response.stiffening(H, shapes_[e]);
-      watch.see(b, e, stiff.ratio, stiff.norm);
+      const Exerted& x = exerted[e];
+      if (x.inverted) watch.inverted.push_back(body_.mesh_tet[e]);
+      if (dashpot) scatter(body_, e, x.dashpot, viscous);
+      if (branches) scatter(body_, e, x.branches, viscous);
+      scatter(body_, e, x.elastic, elastic);
+      watch.see(b, e, x.ratio, x.norm);
     }
   }
+}
+
+/// @param mean  volume change that it shares with others; none: its own
+TissueOperator::Exerted TissueOperator::exerted_by(std::size_t b, std::size_t e, const TissueState& state,
+                                                   const double* mean) const {
+  const TissueBlock& block = body_.blocks[b];
+  const Response& response = responses_[b];
+  const Mat3d H = element_gradient(body_, e, state.u);
+  Exerted x;
+  x.inverted = !(jacobian(H) > 0.0);
+  x.elastic = response.elastic(H, shapes_[e], mean);
+  if (block.tissue.viscosity > 0.0) x.dashpot = response.viscous(H, element_gradient(body_, e, state.v));
+  if (!block.tissue.maxwell.empty()) {
+    const Sym3<double> S = response.relaxing(H, x.elastic);
+    x.branches = response.carry(H, overstress(b, e, state.since, H, S));
+    x.elastic = sum(x.elastic, response.carry(H, S * -response.relaxing_share()));
+  }
+  const Stiffening stiff = response.stiffening(H, shapes_[e]);
+  x.ratio = stiff.ratio, x.norm = stiff.norm;
+  return x;
 }
 
 /// Shared volume changes store Σ_a V_a ½ κ ϑ_a² over the vertices: ½ κ of each element's mean square.
@@ -200,36 +231,34 @@ void TissueOperator::linearise_closed(std::size_t b, const TissueState& state, d
   }
 }
 
-void TissueOperator::linearise_by_duals(std::size_t b, const TissueState& state, double rate,
+void TissueOperator::linearise_by_duals(std::size_t b, std::size_t e, const TissueState& state, double rate,
                                         std::span<const double> mean, TissueTangent& out) const {
   const TissueBlock& block = body_.blocks[b];
   const Response& response = responses_[b];
   const bool dashpot = block.tissue.viscosity > 0.0, branches = !block.tissue.maxwell.empty();
   const bool shared = block.tissue.volume_change == VolumeChange::average_nodal;
-  for (std::size_t e = block.begin; e < block.end; ++e) {
-    const Mat3d H0 = element_gradient(body_, e, state.u), R0 = element_gradient(body_, e, state.v);
-    Mat3<Dual> H = with_scalar<Dual>(H0), R = with_scalar<Dual>(R0);
-    const auto stress = [&](Dual theta) {
-      Mat3<Dual> P = response.elastic(H, shapes_[e], shared ? &theta : nullptr);
-      if (!branches) return P;
-      const Sym3<Dual> S = response.relaxing(H, P);
-      return sum(P, response.carry(H, overstress(b, e, state.since, H, S) - S * Dual(response.relaxing_share())));
-    };
-    const double fixed = shared ? mean[e] : 0.0;
-    for (std::size_t c = 0; c < 9; ++c) {
-      H(c / 3, c % 3).d = 1.0, R(c / 3, c % 3).d = rate;
-      Mat3<Dual> P = stress(fixed);
-      if (dashpot) P = sum(P, response.viscous(H, R));
-      for (std::size_t r = 0; r < 9; ++r) {
-        out.local[e](static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) = P(r / 3, r % 3).d;
-      }
-      H(c / 3, c % 3).d = 0.0, R(c / 3, c % 3).d = 0.0;
+  const Mat3d H0 = element_gradient(body_, e, state.u), R0 = element_gradient(body_, e, state.v);
+  Mat3<Dual> H = with_scalar<Dual>(H0), R = with_scalar<Dual>(R0);
+  const auto stress = [&](Dual theta) {
+    Mat3<Dual> P = response.elastic(H, shapes_[e], shared ? &theta : nullptr);
+    if (!branches) return P;
+    const Sym3<Dual> S = response.relaxing(H, P);
+    return sum(P, response.carry(H, overstress(b, e, state.since, H, S) - S * Dual(response.relaxing_share())));
+  };
+  const double fixed = shared ? mean[e] : 0.0;
+  for (std::size_t c = 0; c < 9; ++c) {
+    H(c / 3, c % 3).d = 1.0, R(c / 3, c % 3).d = rate;
+    Mat3<Dual> P = stress(fixed);
+    if (dashpot) P = sum(P, response.viscous(H, R));
+    for (std::size_t r = 0; r < 9; ++r) {
+      out.local[e](static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) = P(r / 3, r % 3).d;
     }
-    if (!shared) continue;
-    out.volume[e] = response.volume_direction(H0);
-    out.pressure[e] = detail::derivatives_of(stress({fixed, 1.0}));
-    out.modulus[e] = response.volume_modulus(H0, shapes_[e]);
+    H(c / 3, c % 3).d = 0.0, R(c / 3, c % 3).d = 0.0;
   }
+  if (!shared) return;
+  out.volume[e] = response.volume_direction(H0);
+  out.pressure[e] = detail::derivatives_of(stress({fixed, 1.0}));
+  out.modulus[e] = response.volume_modulus(H0, shapes_[e]);
 }
 
 void TissueOperator::linearise(const TissueState& state, double rate, bool semidefinite, TissueTangent& out) const {
@@ -239,10 +268,15 @@ void TissueOperator::linearise(const TissueState& state, double rate, bool semid
   out.pressure.assign(out.volume.size(), Mat3d{});
   out.modulus.assign(out.volume.size(), 0.0);
   for (std::size_t b = 0; b < body_.blocks.size(); ++b) {
-    is_closed(b) ? linearise_closed(b, state, rate, mean, out) : linearise_by_duals(b, state, rate, mean, out);
+    if (is_closed(b)) {
+      linearise_closed(b, state, rate, mean, out);
+      continue;
+    }
+    for_elements(body_.blocks[b].begin, body_.blocks[b].end,
+                 [&](std::size_t e) { linearise_by_duals(b, e, state, rate, mean, out); });
   }
   if (!semidefinite) return;
-  for (ElementTangent& C : out.local) make_semidefinite(C);
+  for_elements(0, out.local.size(), [&](std::size_t e) { make_semidefinite(out.local[e]); });
 }
 
 void TissueOperator::apply(const TissueTangent& tangent, std::span<const Vec3d> x, std::span<Vec3d> y) const {

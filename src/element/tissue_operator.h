@@ -9,9 +9,12 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "base/task_pool.h"
 #include "element/body.h"
 #include "element/branch_memory.h"
 #include "element/force_operator.h"
@@ -63,7 +66,9 @@ class TissueOperator {
  public:
   /// @param body  must outlive this
   /// @param step  what the branches whose times follow the deformation go by
-  explicit TissueOperator(const Body& body, StepKind step = StepKind::implicit);
+  /// @param threads  that elements are shared out to; the same bytes with any number
+  explicit TissueOperator(const Body& body, StepKind step = StepKind::implicit, int threads = 1);
+  int threads() const { return pool_->threads(); }
 
   /// Overwrites `elastic` and `viscous` [N]. Elastic is what is left after long times; viscous is the rest: Kelvin–Voigt
   /// and what the Maxwell branches have not relaxed yet.
@@ -106,12 +111,20 @@ class TissueOperator {
   const Body& body() const { return body_; }
 
  private:
+  /// What an element exerts.
+  struct Exerted {
+    Mat3d elastic{}, dashpot{}, branches{};  ///< [Pa]
+    double ratio = 0.0, norm = 0.0;          ///< of its stiffening
+    bool inverted = false;
+  };
+  Exerted exerted_by(std::size_t block, std::size_t e, const TissueState& state, const double* mean) const;
+  void for_elements(std::size_t begin, std::size_t end, const std::function<void(std::size_t)>& act) const;
   std::vector<double> mean_volume_change(std::span<const Vec3d> u) const;
   bool is_closed(std::size_t block) const;
   void linearise_closed(std::size_t block, const TissueState& state, double rate, std::span<const double> mean,
                         TissueTangent& out) const;
-  void linearise_by_duals(std::size_t block, const TissueState& state, double rate, std::span<const double> mean,
-                          TissueTangent& out) const;
+  void linearise_by_duals(std::size_t block, std::size_t e, const TissueState& state, double rate,
+                          std::span<const double> mean, TissueTangent& out) const;
   template <class T>
   Sym3<T> overstress(std::size_t block, std::size_t e, double since, const Mat3<T>& H, const Sym3<T>& S) const;
   template <class T>
@@ -128,6 +141,7 @@ class TissueOperator {
 
   const Body& body_;
   StepKind step_;
+  std::unique_ptr<detail::TaskPool> pool_;
   std::vector<Response> responses_;        ///< per tissue block
   std::vector<ElementShape> shapes_;       ///< per element
   std::vector<std::size_t> first_branch_;  ///< per block: place of its first element's branches in memory

@@ -52,7 +52,7 @@ struct ContainerKept {
 
   FoundInside found_inside;
   bool begun = false;
-  std::map<Place, double> last_pressing;  ///< forces of the last long step, to begin the next with [N]
+  std::map<Place, Vec3d> last_forces;  ///< of rows in the last long step, to begin the next with [N]
   std::map<std::uint32_t, Bond> bonds;
   std::vector<char> still;  ///< per vertex of the body: a bond at rest
   bool still_changed = false;
@@ -293,17 +293,17 @@ void Container::State::begin_row(ContactRow& row, const InteractionStep& step) c
   if (!trial.empty()) {
     if (const auto at = trial.find(place); at != trial.end())
       row.pressing = at->second.first, row.rubbing = at->second.second;
-  } else if (const auto at = last_pressing.find(place); at != last_pressing.end()) {
-    row.pressing = at->second * step.h;
+  } else if (const auto at = last_forces.find(place); at != last_forces.end()) {
+    row.take(at->second * step.h);
   }
 }
 
 /// Keeps what the rows of an iteration had for the next, and for the next step.
 void Container::State::remember(const InteractionStep& step, const RowGroup& rows) {
-  trial.clear(), last_pressing.clear();
+  trial.clear(), last_forces.clear();
   for (const ContactRow& row : rows.points) {
     trial[place_of(row, step)] = {row.pressing, row.rubbing};
-    if (row.pressing != 0.0) last_pressing[place_of(row, step)] = row.pressing / step.h;
+    if (row.pressing != 0.0) last_forces[place_of(row, step)] = row.impulse() * (1.0 / step.h);
   }
 }
 
@@ -468,7 +468,7 @@ void Container::moved(const InteractionStep& step) {
 
 void Container::archive(Archive& ar) {
   State& s = *state_;
-  ar(s.begun, s.account, s.bonds, s.found_inside, s.reach, s.still_changed, s.last_pressing);
+  ar(s.begun, s.account, s.bonds, s.found_inside, s.reach, s.still_changed, s.last_forces);
   ar.same_size(s.still);
   for (const auto& [v, bond] : s.bonds) ar.check(v < s.reach.surface().body_vertices() && bond.solid < s.solids.size());
   if (ar.reads()) s.list_bonds();

@@ -8,15 +8,16 @@
 
 #include "base/require_fields.h"
 #include "contact/shape_traits.h"
+#include "contact/tool_yield.h"
 #include "glisson/archive.h"
 #include "glisson/simulation/integrator.h"
-#include "instruments/motion/end_search.h"
 
 namespace glisson {
 namespace {
 
 constexpr const char* kRejected = "pose rejected";
-constexpr double kReach = 10.0;  // of the body's diagonal: farther from it no pose makes sense
+constexpr double kReach = 10.0;                      // of the body's diagonal: farther from it no pose makes sense
+constexpr double kProbe = 1e-3, kLeastProbe = 1e-4;  // more force, of itself and [N], that shows how a tool yields
 
 /// A component of the forces along the direction.
 template <Vec3d ToolForces::*part>
@@ -173,42 +174,53 @@ void Instrument::drive(const InteractionStep& step) {
   force_depth_ = depth();
   earlier_ = before_, last_step_ = step_;
   before_ = pose_, step_ = step.h;
-  const bool is_other_step = step.time != time_;
   time_ = step.time;
   const Pose next = driver_->advance(step.time, step.h, {-forces_.total(), -forces_.torque});
   if (accepts(next)) pose_ = next;
-  if (search_ == nullptr) return;
-  if (!search_->begun() || is_other_step) {
-    const Pose free = driver_->advance_under(step.time, step.h, {});
-    search_->begin(before_.position, pose_.position, bounds_.holds(free) ? free.position : pose_.position);
-  }
-  take_trial();
 }
 
 void Instrument::begin_step() {
-  if (search_ != nullptr) search_->forget();
+  if (yields_ != nullptr) yields_->force = -forces_.total();
 }
 
-void Instrument::take_trial() {
-  if (search_ != nullptr) pose_.position = search_->trial();
+/// Where a force on the tool takes it; where it is, if that makes no sense.
+Vec3d Instrument::end_under(const Vec3d& force) {
+  const Pose end = driver_->advance_under(time_, step_, {force, -forces_.torque});
+  return bounds_.holds(end) ? end.position : pose_.position;
+}
+
+ToolYield* Instrument::find_end(const InteractionStep& step) {
+  if (yields_ == nullptr || !step.is_long) return nullptr;
+  ToolYield& tool = *yields_;
+  const double probe = kProbe * norm(tool.force) + kLeastProbe;
+  const Vec3d free = end_under({}), end = end_under(tool.force);
+  for (std::size_t j = 0; j < 3; ++j) {
+    Vec3d more = tool.force;
+    more[j] += probe;
+    const Vec3d way = (end_under(more) - end) * (1.0 / probe);
+    for (std::size_t i = 0; i < 3; ++i) tool.compliance(i, j) = way[i];
+  }
+  tool.held_back = end - free;
+  pose_.position = end;
+  return &tool;
+}
+
+void Instrument::move_to_end() {
+  if (yields_ == nullptr) return;
+  yields_->force = yields_->found;
+  const Pose end = driver_->advance_under(time_, step_, {yields_->force, -forces_.torque});
+  if (accepts(end)) pose_.position = end.position;
 }
 
 std::optional<Vec3d> Instrument::free_end() const {
-  if (search_ == nullptr) return {};
-  return search_->free();
+  if (yields_ == nullptr) return {};
+  const Pose free = driver_->advance_under(time_, step_, {});
+  return bounds_.holds(free) ? free.position : pose_.position;
 }
 
 void Instrument::set_long_steps(bool are_long) {
   at_end_ = are_long;
-  if (are_long && driver_->yields()) search_ = std::make_shared<EndSearch>();
-}
-
-bool Instrument::tries_again() {
-  if (search_ == nullptr) return false;
-  const Pose end = driver_->advance_under(time_, step_, {-forces_.total(), -forces_.torque});
-  // An end that is far outside the body says that the trial is wrong, and not that the driver is.
-  if (!std::isfinite(norm(end.position))) return accepts(end);
-  return search_->goes_on(end.position);
+  if (are_long && driver_->yields()) yields_ = std::make_shared<ToolYield>();
 }
 
 /// Counts a pose that makes no sense, the first as an event; the tool stays where it is then.
@@ -253,25 +265,18 @@ ToolVelocity Instrument::velocity_at(const Vec3d& x) const {
   return velocity;
 }
 
-/// Of a driver that yields, what is learnt about the tissue goes with it.
 struct Instrument::SavedMotion {
   InstrumentState state;
   std::shared_ptr<const void> driver;
-  std::optional<Mat3d> slope;
 };
 
 std::shared_ptr<const Instrument::SavedMotion> Instrument::save_motion() const {
-  SavedMotion saved{*this, driver_->save_state(), {}};
-  if (search_ != nullptr) saved.slope = search_->slope();
-  return std::make_shared<const SavedMotion>(std::move(saved));
+  return std::make_shared<const SavedMotion>(SavedMotion{*this, driver_->save_state()});
 }
 
 void Instrument::load_motion(const SavedMotion& saved) {
-  const double time = time_;  // of the step that is being made: its trials go on
   static_cast<InstrumentState&>(*this) = saved.state;
-  time_ = time;
   driver_->load_state(saved.driver);
-  if (search_ != nullptr && saved.slope) search_->set_slope(*saved.slope);
 }
 
 std::shared_ptr<const void> ToolDriver::save_state() const {
@@ -289,7 +294,6 @@ void Instrument::archive_motion(Archive& ar) {
   ar(pose_, before_, earlier_, step_, last_step_, forces_.normal, forces_.friction, forces_.cutting, forces_.torque,
      force_depth_, events_);
   driver_->archive(ar);
-  if (search_ != nullptr) ar(*search_);
 }
 
 }  // namespace glisson

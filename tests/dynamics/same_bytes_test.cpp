@@ -93,5 +93,30 @@ TEST(SameBytesOnThreads, OneToEight) {  // long
   }
 }
 
+Tissue branching() {
+  Tissue tissue;
+  tissue.kinematics = Kinematics::corotational, tissue.poisson_ratio = 0.45, tissue.viscosity = 2.0;
+  tissue.maxwell.push_back({.share = 0.3, .time = 0.05});
+  return tissue;
+}
+
+// Long steps share the elements out, too: forces, tangents by derivatives and definite ones, with branches and viscosity.
+TEST(SameBytesOnThreads, InLongSteps) {
+  const TetMesh mesh = box_mesh({.cells = {5, 5, 6}, .size = {0.04, 0.04, 0.05}});
+  const auto hash = [&](Integrator integrator, int threads) {
+    SimulationOptions options;
+    options.integrator = integrator, options.threads = threads, options.step = 0.01;
+    Simulation simulation(mesh, {{0, branching()}}, options);
+    simulation.fix("z_min");
+    simulation.drive("z_max", press({.velocity = 0.2, .depth = 0.02, .hold = 1.0}));
+    EXPECT_EQ(simulation.engine_info().threads, threads);
+    return hash_after(8, std::move(simulation));
+  };
+  for (const Integrator integrator : {Integrator::implicit, Integrator::quasi_static}) {
+    const std::uint64_t one = hash(integrator, 1);
+    for (const int threads : {2, 3, 8}) EXPECT_EQ(hash(integrator, threads), one) << threads << " threads";
+  }
+}
+
 }  // namespace
 }  // namespace glisson

@@ -1,5 +1,5 @@
 // Impulses within discs: what they have to fulfil, for points that nearly coincide and for points that are held, too.
-#include "instruments/cutting/disc_impulses.h"
+#include "contact/disc_impulses.h"
 
 #include <gtest/gtest.h>
 

@@ -7,65 +7,10 @@
 #include <sstream>
 
 #include "instruments/contact_scenes.h"
-#include "instruments/motion/end_search.h"
 #include "instruments/needle_scenes.h"
 
 namespace glisson::long_push_test {
 namespace {
-
-/// Trials until x = free + B f(x), f a force of the tissue; −1: not found.
-template <class Force>
-int trials(EndSearch& search, const Vec3d& guess, const Vec3d& free, double mobility, Force force, Vec3d& found) {
-  search.forget();
-  search.begin({}, guess, free);
-  for (int k = 1; k < 30; ++k) {
-    found = search.trial();
-    const Vec3d end = free + force(found) * mobility;
-    if (search.goes_on(end)) continue;
-    return norm(end - found) <= 2e-5 * norm(free - end) + 1e-12 ? k : -1;
-  }
-  return -1;
-}
-
-// A spring, as stiff as 1e4 times the tool's own inertia in the step: in four trials, and in two once it is known.
-TEST(EndSearch, FindsASpringInFourTrials) {
-  for (const double stiffness : {0.01, 1.0, 100.0, 1e4}) {
-    EndSearch search;
-    const auto spring = [&](const Vec3d& x) { return Vec3d{0.0, 0.0, -stiffness * x.z}; };
-    Vec3d found;
-    EXPECT_LE(trials(search, {}, {0.0, 0.0, 1e-3}, 1.0, spring, found), 4) << stiffness;
-    EXPECT_NEAR(found.z, 1e-3 / (1.0 + stiffness), 1e-7 / (1.0 + stiffness)) << stiffness;
-    EXPECT_LE(trials(search, found, {0.0, 0.0, 2e-3}, 1.0, spring, found), 2) << stiffness;
-  }
-}
-
-// A ball's force, |x|^1.5 beyond a gap, and a plate with friction along two ways: found from any start, in 16 and 20 trials at most.
-TEST(EndSearch, FindsContactThatBeginsWithinTheStep) {
-  for (const double gap : {0.0, 2e-4, 9e-4, 2e-3}) {
-    for (const double stiffness : {1.0, 30.0, 1000.0}) {
-      const auto ball = [&](const Vec3d& x) {
-        const double deep = std::max(0.0, x.z - gap);
-        return Vec3d{0.0, 0.0, -stiffness * deep * std::sqrt(deep / 1e-3)};
-      };
-      const auto plate = [&](const Vec3d& x) {
-        const double pressing = stiffness * std::max(0.0, x.z - gap), slips = std::hypot(x.x, x.y);
-        const double rubs = slips > 0.0 ? std::min(stiffness * slips, 0.3 * pressing) / slips : 0.0;
-        return Vec3d{-rubs * x.x, -rubs * x.y, -pressing};
-      };
-      for (const double guess : {0.0, 1e-3, 3e-3}) {
-        EndSearch search;
-        Vec3d found;
-        const int of_ball = trials(search, {0.0, 0.0, guess}, {0.0, 0.0, 1e-3}, 1.0, ball, found);
-        EXPECT_TRUE(of_ball > 0 && of_ball <= 16)
-            << of_ball << " gap " << gap << " stiffness " << stiffness << " from " << guess;
-        EndSearch other;
-        const int of_plate = trials(other, {0.0, 0.0, guess}, {1e-3, 2e-4, 1e-3}, 1.0, plate, found);
-        EXPECT_TRUE(of_plate > 0 && of_plate <= 20)
-            << of_plate << " gap " << gap << " stiffness " << stiffness << " from " << guess;
-      }
-    }
-  }
-}
 
 Tissue tissue() {
   Tissue t;

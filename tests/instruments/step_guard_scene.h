@@ -61,10 +61,6 @@ struct Own final : Interaction {
   void add_forces(const InteractionStep&) override { asker->at("add_forces"); }
   void declare(const InteractionStep&, StepRows&, int) override { asker->at("declare"); }
   void solved(const InteractionStep&, const StepRows&) override { asker->at("solved"); }
-  bool tries_again() override {
-    asker->at("tries_again");
-    return false;
-  }
   void moved(const InteractionStep&) override { asker->at("moved"); }
   void add_forces_at(std::span<const Vec3d>, std::span<Vec3d>) override { asker->at("add_forces_at"); }
   void add_stiffness(std::vector<TriangleStiffness>&) const override { asker->at("add_stiffness"); }

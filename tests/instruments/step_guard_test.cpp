@@ -36,34 +36,13 @@ TEST_P(StepGuard, ReadingsFromEachCallbackChangeNothing) {
 TEST(StepGuardPlaces, AreAllCalled) {
   std::set<std::string> all;
   for (const Integrator integrator : test::every_integrator()) all.merge(places(integrator));
-  EXPECT_EQ(all, (std::set<std::string>{"motion",
-                                        "pose motion",
-                                        "scale",
-                                        "push",
-                                        "driver",
-                                        "attached",
-                                        "body_changed",
-                                        "reach",
-                                        "keeps",
-                                        "rests",
-                                        "state_set",
-                                        "add_forces",
-                                        "declare",
-                                        "solved",
-                                        "tries_again",
-                                        "moved",
-                                        "energy",
-                                        "add_forces_at",
-                                        "add_stiffness",
-                                        "overshoots",
-                                        "archive",
-                                        "next_corner",
-                                        "squared_frequency",
-                                        "released_energy",
-                                        "tool_energy",
-                                        "add_contact",
-                                        "save_state",
-                                        "load_state"}));
+  EXPECT_EQ(all,
+            (std::set<std::string>{"motion",      "pose motion",       "scale",           "push",        "driver",
+                                   "attached",    "body_changed",      "reach",           "keeps",       "rests",
+                                   "state_set",   "add_forces",        "declare",         "solved",      "moved",
+                                   "energy",      "add_forces_at",     "add_stiffness",   "overshoots",  "archive",
+                                   "next_corner", "squared_frequency", "released_energy", "tool_energy", "add_contact",
+                                   "save_state",  "load_state"}));
 }
 
 /// Acts between steps, once.

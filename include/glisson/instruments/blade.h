@@ -76,16 +76,13 @@ class Blade final : public Instrument {
   void load_state(const std::shared_ptr<const void>& state, const BodyView* other_body) override;
 
  private:
-  struct LongPieces;
   struct Saved;
   void cut(double time, const BladeEdge& to);
   const Tet& vertices_of(const EdgePiece& piece) const { return mesh_->tets[piece.tet]; }
   void add_disc(const InteractionStep& step, const EdgePiece& piece, const BladeEdge& before, const BladeEdge& after,
                 RowGroup& rows) const;
-  LongPieces long_pieces(const InteractionStep& step, const BladeEdge& before, const BladeEdge& after) const;
+  bool is_active(const InteractionStep& step, const EdgePiece& piece) const;
   Vec3d last_force(const EdgePiece& piece) const;
-  void solve_long(const InteractionStep& step, const LongPieces& r);
-  void resist_long(const InteractionStep& step, const BladeEdge& before, const BladeEdge& after);
 
   BladeOptions options_;
   std::optional<Cutter> cutter_;   ///< of the body it is attached to
@@ -93,7 +90,7 @@ class Blade final : public Instrument {
   std::span<const char> removed_;  ///< its tets, as in BodyView
   double area_ = 0.0, next_cut_ = 0.0;
   std::vector<EdgePiece> pieces_;
-  std::vector<Vec3d> trial_;  ///< per piece: its impulse in a long step, which the next iteration begins with [N s]
+  std::vector<Vec3d> found_;  ///< per piece: its impulse in this step [N s]
   /// In long steps: force on the piece in a tet at the end of the last one, ascending by tet [N].
   std::vector<std::pair<std::uint32_t, Vec3d>> last_;
   std::vector<std::uint32_t> reached_;

@@ -81,7 +81,6 @@ class ContactTool final : public Instrument {
   void body_changed(const BodyView& body, std::span<const std::uint32_t> origins) override;
   std::span<const std::uint32_t> reach(double time, double h) override;
   std::optional<std::span<const std::uint32_t>> keeps() override;
-  void add_forces(const InteractionStep& step) override;
   void declare(const InteractionStep& step, StepRows& rows, int round) override;
   void solved(const InteractionStep& step, const StepRows& rows) override;
   int most_drag_stages() const override;

@@ -92,7 +92,7 @@ class ToolDriver {
   virtual void load_state(const std::shared_ptr<const void>& state);
 };
 
-class EndSearch;
+struct ToolYield;
 class Instrument;
 
 /// A column of forces.csv: a number that is read from an instrument with every sample.
@@ -155,8 +155,6 @@ class Instrument : public Interaction, protected InstrumentState {
   std::uint64_t rejected() const { return rejected_ + driver_->rejected(); }
   void set_long_steps(bool are_long) override;
   double next_corner(double after) const override { return driver_->corners().after(after); }
-  /// Whether a driver that yields takes the tool elsewhere by the force found than where it was tried.
-  bool tries_again() final;
   /// All events so far, in order.
   const std::vector<InstrumentEvent>& events() const { return events_; }
   /// Its shape in pictures.
@@ -179,9 +177,12 @@ class Instrument : public Interaction, protected InstrumentState {
   std::string driver_refuses_long_steps() const;
   /// Begins a step; to be called first in reach().
   void begin_step();
-  /// In declare(), by those that drive() in reach(): moves the pose to where a driver that yields is tried.
-  void take_trial();
-  /// Where a driver that yields would end without the tissue, in a long step; after drive().
+  /// In declare() of a long step, after drive(): moves the pose to where the force that was found last takes the tool, and finds how
+  /// far another force takes it. @return null where no force moves it
+  ToolYield* find_end(const InteractionStep& step);
+  /// In solved(), first: moves the pose to where the force takes it that the solver has found.
+  void move_to_end();
+  /// Where a tool that a force moves would end without the tissue, in a long step; after drive().
   std::optional<Vec3d> free_end() const;
   /// Whether its forces are those at the end of a step.
   bool forces_at_end() const { return at_end_; }
@@ -205,6 +206,7 @@ class Instrument : public Interaction, protected InstrumentState {
 
  private:
   bool accepts(const Pose& pose);
+  Vec3d end_under(const Vec3d& force);
 
   std::string name_;
   std::shared_ptr<ToolDriver> driver_;
@@ -212,7 +214,7 @@ class Instrument : public Interaction, protected InstrumentState {
   PoseBounds bounds_;
   std::uint64_t rejected_ = 0;         ///< poses of the driver in steps
   bool at_end_ = false;                ///< its steps are long
-  std::shared_ptr<EndSearch> search_;  ///< of a driver that yields, in long steps
+  std::shared_ptr<ToolYield> yields_;  ///< in long steps, where a force moves it
   std::function<void(const Vec3d&, double)> on_puncture_;
 };
 

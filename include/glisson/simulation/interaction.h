@@ -80,24 +80,6 @@ struct TetStiffness {
   std::array<double, 81> slope{};  ///< row 9 (3 i + j) + 3 k + l: of P_ij by F_kl [Pa]
 };
 
-/// The velocities that impulses give to all active vertices within a long step: one of `implicit` or `quasi_static`.
-class StepCompliance {
- public:
-  virtual ~StepCompliance() = default;
-  /// Adds the velocities due to an impulse [N s] at a place: at once at places that were pushed before or whose mobility was
-  /// computed, at the others in the next settle().
-  virtual void spread(std::size_t place, const Vec3d& impulse, std::span<ActiveVertex> vertices) = 0;
-  virtual void settle(std::span<ActiveVertex> vertices) = 0;
-  /// Upper bound of a place's velocity per impulse on it: the same in all free components, 0 in the others [1/kg].
-  virtual Vec3d mobility(std::size_t place) = 0;
-  /// Velocities of means of active vertices per unit impulse on each of them along each axis: that of mean j by mean k at
-  /// j · size + k [1/kg]. Cost: three solves per mean; results are reused as long as the tangent's factor is kept.
-  virtual std::vector<Mat3d> couple(std::span<const std::vector<VertexWeight>> means) = 0;
-  /// Adds the velocities of all active vertices due to impulses [N s] on means.
-  virtual void spread_means(std::span<const std::vector<VertexWeight>> means, std::span<const Vec3d> impulses,
-                            std::span<ActiveVertex> vertices) = 0;
-};
-
 /// The active vertices in a step.
 class InteractionStep {
  public:
@@ -110,23 +92,19 @@ class InteractionStep {
   std::span<const Vec3d> rest;              ///< per vertex of the mesh: rest position [m]
   /// Vertices that interactions hold at rest, ascending by vertex; they have no place.
   std::span<const RestingVertex> resting;
-  /// Per place: velocity per impulse, 1/(m + γh), in each component; 0 where a support or motion holds it [1/kg].
+  /// Per place: velocity per impulse, 1/(m + γh), in each component; 0 where a support or motion holds it [1/kg]. In long steps, where
+  /// impulses move other vertices too, 1 and 0.
   std::span<const Vec3d> mobility;
   std::span<Vec3d> impulses;                ///< per place: sum of the impulses of this step [N s]
   InterfaceBook* interface_book = nullptr;  ///< where book() writes; null where energies are not tracked
-  /// In long steps it replaces `mobility`, which is empty, and `velocity` is (u(t + h) − u(t))/h. Null in other steps.
-  StepCompliance* compliance = nullptr;
+  /// One of `implicit`, `quasi_static` or `semi_implicit`, where an impulse moves all vertices and `velocity` is (u(t + h) − u(t))/h.
+  bool is_long = false;
 
   /// Position of the vertex at a place at time t, or at t + h after moved() [m].
   Vec3d position(std::size_t place) const { return rest[vertices[place].vertex] + vertices[place].displacement; }
 
-  /// Applies an impulse [N s] to the vertex at a place; held components do not move.
+  /// In a short step: applies an impulse [N s] to the vertex at a place; held components do not move.
   void push(std::size_t place, const Vec3d& impulse) const {
-    if (compliance != nullptr) {
-      compliance->spread(place, impulse, vertices);
-      impulses[place] += impulse;
-      return;
-    }
     const Vec3d& a = mobility[place];
     vertices[place].velocity += Vec3d{a.x * impulse.x, a.y * impulse.y, a.z * impulse.z};
     impulses[place] += impulse;
@@ -188,9 +166,6 @@ class Interaction {
   virtual void declare(const InteractionStep&, StepRows&, int /*round*/) {}
   /// All rows have been solved: their impulses are in the velocities.
   virtual void solved(const InteractionStep&, const StepRows&) {}
-  /// In a long step, after solved(): whether what it has found takes itself elsewhere, as a tool that a force moves. Its impulses are
-  /// then taken back, its state is again that after reach(), and declare() is called anew.
-  virtual bool tries_again() { return false; }
   /// The largest SimulationOptions::drag_stages allowed with it: kMostDragStagesBesideOthers, unless overridden. The stages hold what
   /// its rows held in the last step, those of discs and given impulses apart.
   virtual int most_drag_stages() const;
@@ -221,7 +196,7 @@ class Interaction {
 
   /// The reason why it does not support the long steps of `implicit` and `quasi_static`, as the end of a sentence with a remedy;
   /// empty if it does. Its forces are then those at the end of the step, and declare() is called in every iteration of Newton's
-  /// method, several times if several interactions act, always from the state after reach().
+  /// method, always from the state after reach().
   virtual std::string refuses_long_steps() const;
   /// Called before `attached`: whether its steps will be long.
   virtual void set_long_steps(bool /*are_long*/) {}

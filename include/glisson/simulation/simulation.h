@@ -254,7 +254,7 @@ struct StepResult {
   std::span<const std::uint32_t> inverted_tets;  ///< valid until the next step
   /// The reason why a step was not made and what to do; empty if it was made. Valid until the next step.
   std::string_view message;
-  /// Whether the rows of all tools could be met, in explicit steps. Otherwise, as where two plates close on a vertex, all
+  /// Whether the rows of all tools could be met. Otherwise, as where two plates close on a vertex, all
   /// of them miss a part, and the step was made.
   bool contact_met = true;
   /// Whether the step was made; otherwise time has not advanced.

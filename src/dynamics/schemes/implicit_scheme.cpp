@@ -25,12 +25,14 @@ std::span<const Vec3d> view(const std::vector<Vec3d>& field) { return field; }
 
 ImplicitScheme::ImplicitScheme(Body body, const SimulationOptions& options, bool statics)
     : Scheme(std::move(body), options), statics_(statics),
-      relaxes_(statics && options.branches != StaticBranches::follow), tissue_(state_.body),
+      relaxes_(statics && options.branches != StaticBranches::follow),
+      tissue_(state_.body, StepKind::implicit,
+              options.threads > 0 ? options.threads : detail::threads_for(state_.body.elements.size())),
       solver_(state_, tissue_, now_, statics, relaxes_),
       largest_(options.implicit.largest_step.value_or(statics ? kDefaultStaticStep : kDefaultStep)) {
   pace_.step = options.step.value_or(largest_);
   if (is_slow() && !options.implicit.largest_step) largest_ = std::numeric_limits<double>::infinity();
-  info_ = {.instruction_set = "double, element by element", .threads = 1};
+  info_ = {.instruction_set = "double, element by element", .threads = tissue_.threads()};
   now_.resize(state_.body.vertex_count);
 }
 
@@ -343,7 +345,10 @@ bool ImplicitScheme::advance(double h, double end, std::optional<Backup>& before
 
 StepResult ImplicitScheme::made() {
   ++state_.steps;
-  return {watch().inverted.empty() ? StepStatus::ok : StepStatus::inverted, watch().inverted, {}};
+  return {watch().inverted.empty() ? StepStatus::ok : StepStatus::inverted,
+          watch().inverted,
+          {},
+          solver_.contact().is_met()};
 }
 
 /// That a step was not made because its end was asked for, which has left nothing behind.

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kMargin = 0.85,
                  kLeeway = 1.5;  ///< a step that the factor is made for, and how much longer ones it serves for
-constexpr double kMostContactSweeps = 30000.0;  ///< of contact in a step
+constexpr int kMostContactSweeps = 30000;  ///< of contact in a step
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr int kMostShortenings = 8;    ///< of an automatic step in which it is not found, each by half …
 constexpr double kStepRegrowth = 1.1;  ///< … and how fast steps grow again
@@ -217,6 +217,7 @@ StepResult SemiImplicitScheme::step() {
   for (int k = 0; k < kMostShortenings && result.status == StepStatus::not_converged && !state_.options.step; ++k) {
     result = ExplicitScheme::step();
   }
+  result.contact_met = result.contact_met && contact_.is_met();
   if (result.made()) most_step_ = most_step_ < step_size() ? most_step_ * kStepRegrowth : kNoLimit;
   return result;
 }

@@ -20,6 +20,13 @@ constexpr double kDifference = 1e-3;  ///< of h, for the velocity of a motion
 
 std::span<const Vec3d> view(const std::vector<Vec3d>& field) { return field; }
 
+/// A share of the way from one field to another.
+std::vector<Vec3d> between(const std::vector<Vec3d>& from, const std::vector<Vec3d>& to, double share) {
+  std::vector<Vec3d> field(from.size());
+  for (std::size_t v = 0; v < from.size(); ++v) field[v] = from[v] + (to[v] - from[v]) * share;
+  return field;
+}
+
 /// Norm of the forces that a strain of 1 would give. @param tets  what interactions add to the stiffness of tets
 double unit_force(const Body& body, std::span<const TetStiffness> tets) {
   std::vector<double> added(tets.empty() ? 0 : body.elements.size(), 0.0);  // per tet of the mesh
@@ -243,10 +250,10 @@ bool BalanceSolver::search_line(const TimeStep& s, const Eigen::VectorXd& direct
 
 /// Takes u⁺ and forces of contact as an iteration has found them, or goes back towards where they were, `from` and `forces`,
 /// where that leads far away from balance. @return whether all was taken
-bool BalanceSolver::go_towards(const TimeStep& s, const std::vector<Vec3d>& from, const ExertedForces& forces,
+bool BalanceSolver::go_towards(const TimeStep& s, const std::vector<Vec3d>& from, const std::vector<Vec3d>& forces,
                                bool first, Balance& balance) {
   const std::vector<Vec3d> to = next_.u;
-  const ExertedForces to_forces = contact_.exerted();
+  const std::vector<Vec3d> to_forces = contact_.forces();
   const std::size_t inverted = watch_.inverted.size();
   const double before = balance.residual;
   double share = 1.0;
@@ -256,8 +263,8 @@ bool BalanceSolver::go_towards(const TimeStep& s, const std::vector<Vec3d>& from
     if (std::isfinite(balance.residual) && nearer && watch_.inverted.size() <= inverted) return share == 1.0;
     share *= 0.5;
     if (share < kLeastShare && std::isfinite(balance.residual)) break;
-    for (std::size_t v = 0; v < to.size(); ++v) next_.u[v] = from[v] + (to[v] - from[v]) * share;
-    contact_.set_forces(forces.towards(to_forces, share));
+    next_.u = between(from, to, share);
+    contact_.set_forces(between(forces, to_forces, share));
   }
   return false;
 }
@@ -286,11 +293,12 @@ bool BalanceSolver::newton_in_contact(const TimeStep& s, Balance balance) {
       if (!direction.allFinite()) return false;
     }
     const std::vector<Vec3d> from = next_.u;
-    const ExertedForces forces = contact_.exerted();
+    const std::vector<Vec3d> forces = contact_.forces();
     flat(std::span<Vec3d>(next_.u)) += direction;
     if (!contact_.correct(next_.u)) return false;
     last = balance.residual;
     const bool whole = go_towards(s, from, forces, iterations_ == 0, balance);
+    contact_.set_taken(whole);
     if (whole && contact_.agrees() && balance.met(options.tolerance)) return true;
     if (iterations_ == 0 || balance.residual < 0.5 * mark) {
       mark = balance.residual, deadline = iterations_ + 1 + options.most_iterations;

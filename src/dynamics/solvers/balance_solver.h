@@ -85,7 +85,7 @@ class BalanceSolver {
   std::optional<Balance> start(const TimeStep& s, std::span<const Vec3d> last_change, double last_h);
   bool newton(const TimeStep& s, Balance balance);
   bool newton_in_contact(const TimeStep& s, Balance balance);
-  bool go_towards(const TimeStep& s, const std::vector<Vec3d>& from, const ExertedForces& forces, bool first,
+  bool go_towards(const TimeStep& s, const std::vector<Vec3d>& from, const std::vector<Vec3d>& forces, bool first,
                   Balance& balance);
   void linearise(const TimeStep& s, bool semidefinite, bool anew = true);
   bool search_line(const TimeStep& s, const Eigen::VectorXd& direction, Balance& balance);

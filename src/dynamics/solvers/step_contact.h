@@ -1,11 +1,9 @@
 // step_contact.h — interactions within a step whose vertices move one another: their forces at its end, by a factor of the step.
 //
-//   Newton's u⁺ with the forces so far ─▶ for each interaction: its own taken off by P⁻¹, found anew with all points moving one
-//                                         another by P⁻¹, until no force of several interactions changes
-//                                      ─▶ u⁺ with the forces they find
+//   Newton's u⁺ with the forces so far ─▶ these taken off by P⁻¹ ─▶ the rows of all interactions, solved by columns of P⁻¹
+//                                      ─▶ u⁺ with the forces found
 //
-// W = J P⁻¹ Jᵀ of contact is never formed: its columns P⁻¹ e are solved for where something is pushed for the first time,
-// and kept as long as the factor P; those of means of vertices, P⁻¹ w, likewise. In a long step P is the tangent or near it; where it is
+// Columns P⁻¹ w of means of vertices on which rows act are kept as long as the factor P. In a long step P is the tangent or near it; where it is
 // not, Newton's method takes more iterations, and ends at the same state. In a step of `semi_implicit` P is exact, and one correction is all.
 #pragma once
 
@@ -19,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "contact/step_mobility.h"
 #include "dynamics/solvers/step_factor.h"
 #include "dynamics/solvers/step_interrupt.h"
 #include "dynamics/state/body_state.h"
@@ -26,18 +25,7 @@
 
 namespace glisson {
 
-/// Forces of interactions on the vertices of the body, at the end of a step [N].
-struct ExertedForces {
-  std::vector<Vec3d> total;             ///< per vertex
-  std::vector<std::vector<Vec3d>> own;  ///< of each interaction
-
-  void set_zero(std::size_t vertices);
-  /// Goes a share of the way to others.
-  ExertedForces towards(const ExertedForces& others, double share) const;
-  void archive(Archive& ar);
-};
-
-class StepContact final : public StepCompliance {
+class StepContact final : public StepMobility {
  public:
   /// Both must outlive this.
   StepContact(const BodyState& state, StepFactor& system) : state_(state), system_(system) {}
@@ -58,7 +46,7 @@ class StepContact final : public StepCompliance {
   struct Backup {
     Interactions::Saved interactions;
     Interactions::Rests rests;
-    ExertedForces forces;
+    std::vector<Vec3d> forces;
   };
   Backup backup();
   void restore(const Backup& backup);
@@ -79,98 +67,78 @@ class StepContact final : public StepCompliance {
   /// The same of what is a stress of tets. @param rate  dv/du [1/s]
   std::span<const TetStiffness> tet_stiffness(double rate);
   /// Corrects u⁺ of a Newton iteration that was made with forces(), and finds these anew.
-  /// @return false where there is no factor, or where the forces were not found within the work allowed: give_up() comes next then
+  /// @return false where there is no factor, or where the program stops the step: give_up() comes next then
   bool correct(std::span<Vec3d> u);
   /// Asked between trials, which end then: correct() returns false. @param interrupt  must outlive this
   void set_interrupt(StepInterrupt& interrupt) { interrupt_ = &interrupt; }
-  /// The only correction of a step, which no iteration follows: where a tool that a force moves is not found, there is no answer, and the
-  /// work of all interactions together is limited. @param sweeps  over all places that are pushed
-  void set_last(double sweeps) { is_last_ = true, most_sweeps_ = sweeps; }
-  /// Whether the last correct() found forces that all interactions agree on.
+  /// A correction is the only one of its step, which no iteration follows. @param sweeps  over the rows, at most: false where they do not do
+  void set_last(int sweeps) { is_last_ = true, most_sweeps_ = sweeps; }
+  /// Whether the forces of the last correct() meet all rows, with tools that a force moves where it takes them.
   bool agrees() const { return agrees_; }
+  /// Forces that have been taken as the last correct() found them, or not.
+  void set_taken(bool whole) { taken_ = whole; }
   /// Whether something has come about within the step, which ends with u, v, that is to be dated.
   bool overshoots(std::span<const Vec3d> u, std::span<const Vec3d> v);
   /// The step has been made, with u, v at its end. @param resting  what interactions hold still stands against these forces
   void made(std::span<const Vec3d> u, std::span<const Vec3d> v, std::span<const RestingVertex> resting);
 
   /// On the vertices of the body, at the end of the step [N].
-  const std::vector<Vec3d>& forces() const { return forces_.total; }
-  const ExertedForces& exerted() const { return forces_; }
-  void set_forces(ExertedForces forces) { forces_ = std::move(forces); }
+  const std::vector<Vec3d>& forces() const { return forces_; }
+  void set_forces(std::vector<Vec3d> forces) { forces_ = std::move(forces); }
+  /// Whether all rows of the step could be met.
+  bool is_met() const { return interactions_.is_met(); }
   /// By WorkSink: what interactions took of the tools' work in the step [J].
   std::array<double, 3> lost() const;
   /// The same, that the velocities v of the vertices would have taken with those of the tools before or after the step [J].
   std::array<double, 3> lost_at(std::span<const Vec3d> v, double InterfaceBook::Page::*tools) const;
 
-  void spread(std::size_t place, const Vec3d& impulse, std::span<ActiveVertex> vertices) override;
-  void settle(std::span<ActiveVertex> vertices) override;
-  Vec3d mobility(std::size_t place) override;
-  std::vector<Mat3d> couple(std::span<const std::vector<VertexWeight>> means) override;
-  void spread_means(std::span<const std::vector<VertexWeight>> means, std::span<const Vec3d> impulses,
-                    std::span<ActiveVertex> vertices) override;
+  std::vector<const Column*> columns(std::span<const Mean> means) override;
+  bool stops() override { return interrupt_ != nullptr && interrupt_->wanted(); }
+  void set_velocities(std::span<const Vec3d> impulses, std::span<ActiveVertex> vertices) override;
   void archive(Archive& ar);
 
  private:
-  using Column = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+  using MeanKey = std::vector<std::pair<std::uint32_t, double>>;
   /// Of a mean of vertices.
   struct MeanColumn {
     Column moved;
     bool used = true;  ///< in this step
   };
-  /// Of all forces of an interaction.
-  struct Response {
-    std::vector<Vec3d> forces;
-    Eigen::VectorXd moved;  ///< P⁻¹ of them [m]
-  };
   /// With a factor.
   struct Solved {
-    std::map<std::uint32_t, Column> columns;  ///< per vertex: displacement of all components by a unit force [m/N]
-    std::map<std::vector<std::pair<std::uint32_t, double>>, MeanColumn> means;  ///< the same by one on a mean
-    std::vector<Response> responses;                                            ///< per interaction, as last asked for
+    std::map<MeanKey, MeanColumn> means;  ///< displacement of all components by a unit force on a mean [m/N]
+    std::vector<Vec3d> forces;            ///< those last asked for [N] …
+    Eigen::VectorXd moved;                ///< … and P⁻¹ of them [m]
   };
   Solved& solved();
-  const Column& column(std::uint32_t vertex);
-  const Column& column_at(std::size_t place);
-  void find_columns(std::span<const std::vector<VertexWeight>> means);
-  const Column& column_of(const std::vector<VertexWeight>& mean);
-  void move(std::size_t by, const Vec3d& impulse, std::size_t place, ActiveVertex& vertex) const;
   void activate(std::span<const std::uint32_t> vertices);
-  void put_at_start(std::span<const Vec3d> u);
-  void put_at_end(std::span<const Vec3d> u, std::span<const Vec3d> v);
+  void set_start(std::span<const Vec3d> u, const Eigen::VectorXd& moved);
+  void set_end(std::span<const Vec3d> u, std::span<const Vec3d> v);
   template <class Velocity>
   std::array<double, 3> lost_by(double InterfaceBook::Page::*tools, const Velocity& velocity) const;
-  double find_forces();
-  double find_forces_of(std::size_t interaction);
-  bool count_work(bool tries_again, int trial);
-  void take_off(std::size_t interaction);
-  void move_by_change(std::span<Vec3d> u, const ExertedForces& known, std::span<Eigen::VectorXd> moved);
-  const Eigen::VectorXd& response(std::size_t interaction, const std::vector<Vec3d>& forces);
+  const Eigen::VectorXd& response(const std::vector<Vec3d>& forces);
+  bool find_forces();
 
   const BodyState& state_;
   StepFactor& system_;
   Interactions interactions_;
   std::vector<ActiveVertex> active_;
-  ExertedForces forces_;
-  std::vector<Vec3d> start_;  ///< u(t) [m]
+  std::vector<Vec3d> forces_;  ///< on the vertices of the body [N]
+  std::vector<Vec3d> start_;   ///< u(t) [m]
   std::vector<TriangleStiffness> stiffness_;
   std::vector<TetStiffness> tet_stiffness_;
   Backup before_, reached_;  ///< before reach(), and after it
   double h_ = 0.0, factor_h_ = 0.0;
   bool agrees_ = true;
-  std::uint64_t factor_ = 0;  ///< that at_places_ is of
-  std::set<std::uint32_t> asked_,
-      asked_before_;  ///< vertices whose columns were wanted with this factor in this step, and before that
-  std::vector<char> pushes_means_;         ///< per interaction
-  std::vector<std::size_t> order_;         ///< in which they have their turns: by their names
-  std::size_t acting_ = 0;                 ///< whose turn it is
-  std::vector<Column> at_places_;          ///< columns per place, of active vertices; empty: not asked for yet
-  std::vector<std::uint32_t> near_, far_;  ///< places that have columns, and the others
-  std::vector<Vec3d> unsettled_;           ///< per place: impulses that the others have not got yet [N s]
+  std::vector<Vec3d> free_;        ///< per place: 1 of components that may move, else 0
+  std::vector<Vec3d> velocities_;  ///< per place, without any tool [m/s]
+  std::set<MeanKey> asked_,
+      asked_before_;  ///< means whose columns were wanted with this factor in this step, and before that
   StepInterrupt* interrupt_ = nullptr;
-  double most_sweeps_ = std::numeric_limits<double>::infinity();
-  double pushes_ = 0.0;     ///< in this correction
-  bool is_last_ = false;    ///< as set_last()
-  bool exhausted_ = false;  ///< this correction has done the work that is allowed
+  int most_sweeps_ = 0;   ///< of a correction that is the last; 0: as many as it takes
+  bool is_last_ = false;  ///< as set_last()
+  bool taken_ = true;     ///< as set_taken()
+  int unsettled_ = 0;     ///< corrections of this step whose rows did not settle
 };
 
 }  // namespace glisson

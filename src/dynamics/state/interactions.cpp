@@ -142,24 +142,19 @@ void Interactions::add_forces() {
 
 void Interactions::constrain(std::span<const Vec3d> mobility) {
   step_.mobility = mobility;
-  step_.compliance = nullptr;
+  step_.is_long = false;
   solver_.solve(all_, step_);
 }
 
-void Interactions::constrain(std::size_t interaction, StepCompliance& compliance) {
-  step_.mobility = {};
-  step_.compliance = &compliance;
-  solver_.solve_alone(all_, interaction, step_);
+int Interactions::constrain(std::span<const Vec3d> free, StepMobility& mobility, int most) {
+  step_.mobility = free;
+  step_.is_long = true;
+  return solver_.solve_coupled(all_, step_, mobility, most);
 }
 
 void Interactions::list_held(HeldRows& held) const {
   held.clear();
   if (!all_.empty()) solver_.list_held(step_, held);
-}
-
-void Interactions::clear_impulses() {
-  std::fill(impulses_.begin(), impulses_.end(), Vec3d{});
-  if (step_.interface_book != nullptr) book_.begin(step_.vertices.size());
 }
 
 Interactions::Saved Interactions::save() const {
@@ -170,16 +165,6 @@ Interactions::Saved Interactions::save() const {
 
 void Interactions::load(const Saved& saved, const BodyView* other_body) {
   for (std::size_t k = 0; k < all_.size(); ++k) all_[k]->load_state(saved[k], other_body);
-}
-
-void Interactions::load(std::size_t interaction, const std::shared_ptr<const void>& saved) {
-  all_[interaction]->load_state(saved, nullptr);
-}
-
-/// The vectors that a step looks at stay where they are.
-void Interactions::go_back(const Found& found) {
-  std::copy(found.impulses.begin(), found.impulses.end(), impulses_.begin());
-  book_ = found.book;
 }
 
 bool Interactions::overshoot() {

@@ -53,26 +53,21 @@ class Interactions {
   void add_forces();
   /// @param mobility  per place, 1/(m + γh), 0 of components that a support or motion holds [1/kg]
   void constrain(std::span<const Vec3d> mobility);
-  /// In a long step.
-  void constrain(std::size_t interaction, StepCompliance& compliance);
-  /// Impulses and books of a step, to go back to.
-  struct Found {
-    std::vector<Vec3d> impulses;
-    InterfaceBook book;
-  };
-  Found found() const { return {impulses_, book_}; }
-  void go_back(const Found& found);
+  /// In a long step. @param free  per place: 1 of components that may move, else 0 @param most  sweeps @return sweeps that it took
+  int constrain(std::span<const Vec3d> free, StepMobility& mobility, int most);
+  /// Whether the impulses of a long step no longer changed at the end.
+  bool has_settled() const { return solver_.has_settled(); }
+  /// Whether a tool that a force moves ends elsewhere than its rows were declared for. @param share  of what the tissue holds it back
+  bool moves_on(double share) const { return solver_.moves_on(share); }
   /// What impulses held in this step.
   void list_held(HeldRows& held) const;
   /// Whether all that they declared in this step could be met.
   bool is_met() const { return !solver_.is_unmet(); }
-  void clear_impulses();
   /// What each has of its own (Interaction::save_state), and takes them back there.
   using Saved = std::vector<std::shared_ptr<const void>>;
   Saved save() const;
   /// @param other_body  as Interaction::load_state
   void load(const Saved& saved, const BodyView* other_body = nullptr);
-  void load(std::size_t interaction, const std::shared_ptr<const void>& saved);
   /// What those held still stand against, for moved().
   void set_resting(std::span<const RestingVertex> resting) { step_.resting = resting; }
   /// Whether some say so of the step, with its end among the active vertices.

@@ -121,7 +121,7 @@ std::span<const std::uint32_t> ContactTool::reach(double time, double h) {
   s.solid.earlier = s.solid.before, s.solid.last_h = s.last_h;
   s.solid.before = before_, s.solid.after = pose_;
   s.last_h = h;
-  s.trial.clear(), s.unsettled = 0, s.settled = true;
+  s.trial.clear();
   const std::optional<Vec3d> free = free_end();
   if (!free) return s.reach.ask({&s.solid, 1}, h);
   std::array<ContactSolid, 2> ways{s.solid, s.solid};
@@ -131,19 +131,11 @@ std::span<const std::uint32_t> ContactTool::reach(double time, double h) {
 
 std::optional<std::span<const std::uint32_t>> ContactTool::keeps() { return state_->reach.keeps(); }
 
-/// Begins a short step, or an iteration of a long one: several tools act in turn in it, and are solved for more than once.
-void ContactTool::add_forces(const InteractionStep&) {
-  State& s = *state_;
-  s.unsettled += s.settled ? 0 : 1;
-  s.settled = true;
-}
-
 void ContactTool::declare(const InteractionStep& step, StepRows& rows, int round) {
   State& s = *state_;
-  if (step.compliance == nullptr) return s.declare_short(step, rows.group(), round);
+  if (!step.is_long) return s.declare_short(step, rows.group(), round);
   if (round == 0) {
-    take_trial();
-    if (s.solid.after.position != pose_.position) s.unsettled = 0;
+    s.solid.yields = rows.group().yields = find_end(step);
     s.solid.after = pose_;
   }
   s.declare_long(step, rows.group(), round);
@@ -151,6 +143,8 @@ void ContactTool::declare(const InteractionStep& step, StepRows& rows, int round
 
 void ContactTool::solved(const InteractionStep& step, const StepRows& rows) {
   State& s = *state_;
+  move_to_end();
+  s.solid.after = pose_;
   forces_ = {};
   s.found(step, rows.group());
   if (s.options.bonded) s.bond(step, rows.group(), forces_);

@@ -16,10 +16,9 @@ constexpr double kTouch = 1e-6;       // of the body's size: tissue so near to a
 constexpr double kAllowance = 0.01;   // of its longest edge: a triangle may be so deep inside between its corners …
 constexpr double kMostAllowed = 0.1;  // … and so much of the thickness
 constexpr double kDeeper = 0.02;      // of that: a point so much deeper than those held is held, too …
-constexpr double kLongDeeper = 0.1;   // … in a long step, where points that are close give each other their load …
+constexpr double kLongDeeper = 0.05;  // … in a long step, where points that are close give each other their load …
 constexpr std::uint32_t kMostPoints = 3;  // … up to so many of a triangle
 constexpr int kMostLooks = 3;             // for points of triangles, in a short step
-constexpr int kMostUnsettled = 5;         // iterations of a long step whose sweeps come to their limit
 constexpr double kStride = 0.25;          // of the thickness: a fast triangle is looked at so often on its way
 constexpr int kMostStrides = 200;
 
@@ -168,7 +167,6 @@ void ContactTool::State::hold(std::size_t triangle, const std::array<double, 3>&
 /// All rows of a long step. Points move one another, so that those that come inside by it are looked for until there are
 /// none: vertices first, as in a short step.
 void ContactTool::State::declare_long(const InteractionStep& step, RowGroup& rows, int round) {
-  if (round == 0 && unsettled == kMostUnsettled) return exert_again(rows);
   std::size_t before = rows.points.size();
   if (round == 0) {
     begin_vertices(step);
@@ -186,22 +184,10 @@ void ContactTool::State::declare_long(const InteractionStep& step, RowGroup& row
   begin_rows(before, step, rows);
 }
 
-/// The same impulses again. Points close to each other may go on giving their load to one another, while the force changes by some 1e-4 of
-/// itself: with forces that change no balance would be found. With these it is, and points are off by what the last sweep moved them.
-void ContactTool::State::exert_again(RowGroup& rows) {
-  pressed.assign(pressed.size(), 0.0), exerted.assign(exerted.size(), Vec3d{});
-  rows.points.swap(rows.earlier);
-  for (ContactRow& row : rows.points) row.is_new = true;
-  rows.has_impulses = true;
-}
-
 /// What solving a step took, and what it leaves for the next iteration of a long one.
 void ContactTool::State::found(const InteractionStep& step, const RowGroup& rows) {
-  if (rows.has_impulses) return;
   effort.sweeps = rows.sweeps, effort.corrected = rows.corrected;
-  if (step.compliance == nullptr) return;
-  remember(step, rows);
-  settled = rows.last_sweeps < kMostLongSweeps;
+  if (step.is_long) remember(step, rows);
 }
 
 /// Keeps what the rows of an iteration had for the next. Points that were not met this time stay.
@@ -237,7 +223,7 @@ void ContactTool::State::require_outside(const BodyView& body, const Pose& pose,
 /// Looks for triangles that the tool enters between their corners, deeper than where they are held already.
 /// @param moved  only among those that rows move @return how many points it adds
 std::size_t ContactTool::State::add_triangles(bool moved, const InteractionStep& step, RowGroup& rows) {
-  const bool is_long = step.compliance != nullptr;
+  const bool is_long = step.is_long;
   const std::size_t before = rows.points.size();
   if (!is_long && !rows.others_act) {  // otherwise all have just been measured
     for (const std::uint32_t i : touched) measure(i, step);
@@ -296,7 +282,7 @@ double ContactTool::State::least_of(const std::array<Vec3d, 3>& x) const {
 void ContactTool::State::add_triangle(std::size_t triangle, int strides, double allowance, const InteractionStep& step,
                                       RowGroup& rows) {
   const Triangle& t = reach.triangles()[triangle];
-  const double deeper = step.compliance != nullptr ? kLongDeeper : kDeeper;
+  const double deeper = step.is_long ? kLongDeeper : kDeeper;
   const double let = held[triangle].points > 0 ? (1.0 + deeper) * allowance - held[triangle].level : allowance;
   for (int k = 1; k <= strides; ++k) {
     const double share = static_cast<double>(k) / strides;
@@ -328,7 +314,7 @@ void ContactTool::State::bond(const InteractionStep& step, const RowGroup& rows,
   auto held_row = rows.holds.begin();
   for (const auto& [vertex, anchor] : bonds) {
     const std::uint32_t place = step.place_of[vertex];
-    if (place == InteractionStep::kNowhere || step.compliance != nullptr) continue;
+    if (place == InteractionStep::kNowhere || step.is_long) continue;
     const Vec3d impulse = (held_row++)->impulse, n = solid.after.axes * distance_to(options.shape, anchor).normal;
     const Vec3d across = n * dot(impulse, n);
     forces.normal += across * (1.0 / step.h), forces.friction += (impulse - across) * (1.0 / step.h);
@@ -352,7 +338,7 @@ void ContactTool::State::bear(std::uint32_t vertex, double pressing, const Vec3d
 
 void ContactTool::State::collect(const InteractionStep& step, const RowGroup& rows, ToolForces& forces) {
   const double rate = 1.0 / step.h;
-  const bool is_long = step.compliance != nullptr;
+  const bool is_long = step.is_long;
   last_pressing.clear(), last_bonds.clear();
   for (const ContactRow& row : rows.points) {
     if (row.bonded) {

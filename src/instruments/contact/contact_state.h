@@ -47,8 +47,6 @@ struct ContactTool::State : ContactKept {
   ContactSolid solid;
   ContactReach reach;
 
-  bool settled = true;                 ///< the last sweeps of a long step did not come to their limit
-  int unsettled = 0;                   ///< iterations of it in which they did
   std::vector<Vec3d> starts, ends;     ///< per vertex of the reach, in the frame of the tool
   std::vector<double> at_ends;         ///< φ there
   std::vector<std::uint32_t> touched;  ///< vertices of the reach that rows move, as places there
@@ -73,7 +71,6 @@ struct ContactTool::State : ContactKept {
   void hold(std::size_t triangle, const std::array<double, 3>& weights, double allowance, const InteractionStep& step,
             RowGroup& rows);
   void remember(const InteractionStep& step, const RowGroup& rows);
-  void exert_again(RowGroup& rows);
   void found(const InteractionStep& step, const RowGroup& rows);
   void require_outside(const BodyView& body, const Pose& pose, const Vec3d& direction) const;
   void measure(std::size_t i, const InteractionStep& step);

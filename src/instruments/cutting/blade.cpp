@@ -75,7 +75,7 @@ std::span<const std::uint32_t> Blade::reach(double, double) {
   const BladeEdge now = edge();
   const bool has_gone_on = cutter_ && (now.from != cutter_->edge().from || now.to != cutter_->edge().to);
   if (forces_at_end() && has_gone_on) pieces_ = cutter_->contact(now);  // a part of a long step
-  reached_.clear(), trial_.clear();
+  reached_.clear(), found_.clear();
   for (const EdgePiece& piece : pieces_) {
     reached_.insert(reached_.end(), vertices_of(piece).begin(), vertices_of(piece).end());
   }
@@ -85,11 +85,11 @@ std::span<const std::uint32_t> Blade::reach(double, double) {
 /// A piece gives its tissue up to G l h along the edge's path through it, or as much less as takes it along.
 void Blade::add_disc(const InteractionStep& step, const EdgePiece& piece, const BladeEdge& before,
                      const BladeEdge& after, RowGroup& rows) const {
+  if (!is_active(step, piece)) return;
   DiscRow row;
   Vec3d at{};
   for (std::size_t c = 0; c < 4; ++c) {
     row.places[c] = step.place_of[vertices_of(piece)[c]];
-    if (row.places[c] == InteractionStep::kNowhere) return;
     const double w = row.weights[c] = piece.weights[c];
     at += step.position(row.places[c]) * w;
     const Vec3d& a = step.mobility[row.places[c]];
@@ -97,9 +97,15 @@ void Blade::add_disc(const InteractionStep& step, const EdgePiece& piece, const 
     row.tool[c] = velocity_at(step.position(row.places[c]));
   }
   row.line = after.to - after.from;
-  const double share = std::clamp(dot(at - before.from, row.line) / dot(row.line, row.line), 0.0, 1.0);
+  const Vec3d was = step.is_long ? before.to - before.from : row.line;
+  const double share = std::clamp(dot(at - before.from, was) / dot(was, was), 0.0, 1.0);
   row.velocity = ((after.from - before.from) * (1.0 - share) + (after.to - before.to) * share) * (1.0 / step.h);
   row.most = options_.toughness * piece.length * step.h;
+  if (step.is_long) {
+    row.last = row.impulse = last_force(piece) * step.h;
+    row.yields = rows.yields;
+    row.tool.fill(velocity_at(at + row.velocity * step.h));
+  }
   rows.discs.push_back(row);
 }
 
@@ -107,21 +113,52 @@ void Blade::declare(const InteractionStep& step, StepRows& rows, int round) {
   if (round > 0) return;
   const BladeEdge before = edge();
   drive(step);
+  rows.group().yields = find_end(step);
   const BladeEdge after = edge();
-  forces_ = {};
-  if (step.compliance != nullptr) return resist_long(step, before, after);
   for (const EdgePiece& piece : pieces_) add_disc(step, piece, before, after, rows.group());
 }
 
 void Blade::solved(const InteractionStep& step, const StepRows& rows) {
+  move_to_end();
+  forces_ = {};
+  const double on = step.is_long ? step.h : 0.0;  // to where tissue is at the time of the forces
   for (const DiscRow& row : rows.group().discs) {
     for (std::size_t c = 0; c < 4; ++c) {
       const Vec3d push = row.impulse * row.weights[c];
+      const Vec3d at = step.position(row.places[c]) + step.vertices[row.places[c]].velocity * on;
       forces_.cutting += push * (1.0 / step.h);
-      forces_.torque += cross(step.position(row.places[c]) - pose_.position, push) * (1.0 / step.h);
+      forces_.torque += cross(at - pose_.position, push) * (1.0 / step.h);
     }
   }
+  if (!step.is_long) return;
+  found_.assign(pieces_.size(), Vec3d{});
+  std::size_t next = 0;
+  for (std::size_t k = 0; k < pieces_.size(); ++k) {
+    if (is_active(step, pieces_[k])) found_[k] = rows.group().discs[next++].impulse;
+  }
 }
+
+bool Blade::is_active(const InteractionStep& step, const EdgePiece& piece) const {
+  const Tet& t = vertices_of(piece);
+  return std::all_of(t.begin(), t.end(),
+                     [&](std::uint32_t v) { return step.place_of[v] != InteractionStep::kNowhere; });
+}
+
+/// Force on the same piece in the step before [N].
+Vec3d Blade::last_force(const EdgePiece& piece) const {
+  const auto at =
+      std::lower_bound(last_.begin(), last_.end(), piece.tet, [](const auto& a, auto t) { return a.first < t; });
+  return at != last_.end() && at->first == piece.tet ? at->second : Vec3d{};
+}
+
+void Blade::moved(const InteractionStep& step) {
+  if (!step.is_long) return;
+  last_.clear();
+  for (std::size_t k = 0; k < found_.size(); ++k) last_.emplace_back(pieces_[k].tet, found_[k] * (1.0 / step.h));
+  std::sort(last_.begin(), last_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+}
+
+std::string Blade::refuses_long_steps() const { return driver_refuses_long_steps(); }
 
 /// The edge enters tissue or leaves it: G l holds from there on.
 bool Blade::overshoots(const InteractionStep& step) {

@@ -4,7 +4,7 @@
 //
 // An answer f = −k y is borne where h² k < 4 m + 2 h² k̂, a mass that is dragged along where it is lighter than m. Both show in
 // the change of the answer over the last displacement, k̂ = −Δf·Δy/Δy²; it is used where h² k̂ > m only. In a long step f is the answer
-// at its end, which end_search.h finds, and k̂ serves the first guess alone.
+// at its end, which is found with the rows of the tool (contact/tool_yield.h), and k̂ serves the first guess alone.
 #include <algorithm>
 #include <cmath>
 

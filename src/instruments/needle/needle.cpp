@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/require_fields.h"
 #include "contact/row_group.h"
@@ -17,6 +18,9 @@ constexpr double kPullBack = 0.2;  ///< share of an error of position that a ste
 constexpr double kSlack = 1e-3;    ///< compliance of a row over the mean of W: rows of one vertex would have no answer
 constexpr double kLeastMobility = 1e-30;  ///< [1/kg]: so that rows of held tissue have an answer, too
 constexpr double kReach = 1e-3;           ///< of the spacing: how far before the path's end the tip is there
+constexpr int kMostBreaks =
+    3;  ///< of a row from sticking to slip between iterations of a long step: it slips from then on
+constexpr double kMostGrowth = 0.15;  ///< of the spacing: by how much a path grows in a long step
 
 }  // namespace
 
@@ -73,7 +77,7 @@ void Needle::Solver::find_rows(const InteractionStep& step) {
     const std::size_t end = s.end_of(s.entered - 1);
     for (std::size_t j = 0; j < s.nodes.size(); ++j) {
       if (!shaft::read(step, s.nodes[j]) || j >= end) continue;
-      const double behind = dot(s.nodes[j].position - before, d) - (step.compliance != nullptr ? way_past(j) : 0.0);
+      const double behind = dot(s.nodes[j].position - before, d) - (step.is_long ? way_past(j) : 0.0);
       if (behind >= 0.0) continue;
       all.push_back(&s.nodes[j]);
       node.push_back(j);
@@ -88,33 +92,73 @@ void Needle::Solver::find_rows(const InteractionStep& step) {
   from_hand.push_back(s.options.length);
 }
 
-/// The rows as a block of a short step: the tissue stays on the bent needle, all but a tip that cuts.
+/// By how much the needle passes a node within a long step [m]: at its end lengths of shaft are those there.
+double Needle::Solver::way_past(std::size_t node_number) const {
+  if (node_number < s.ways.size() && s.ways[node_number].next) return *s.ways[node_number].next;
+  return s.slips[node_number] != 0 ? dot(after - before, d) : 0.0;
+}
+
+/// Where a longer shaft is held back more, ways found from ways swing to and fro: the secant through the last two leads to where they agree.
+void Needle::State::Way::take(double way) {
+  last_found = found, found = way, next = way;
+  if (last_found && used != last_used) {
+    const double slope = (way - *last_found) / (used - last_used);
+    if (slope < 0.0) next = used + (way - used) / (1.0 - slope);
+  }
+  last_used = used;
+}
+
+/// The tissue stays on the bent needle, all but a tip that cuts.
 shaft::Block Needle::Solver::block(const InteractionStep& step, const ToolVelocity& tool) {
   const bool cuts = has_tip && s.tip_cuts;
   shaft::Block b{
       .direction = d, .velocity = needle_velocity(), .tool = tool, .h = h, .held = all.size() - (cuts ? 1 : 0)};
   for (const shaft::Row* row : all) b.add(*row);
   b.friction = s.options.friction;
-  b.W = s.mobility.of(step, s.nodes, node, has_tip ? &s.tip : nullptr);
   C = cantilever(from_hand, s.bending_stiffness());
   b.compliance = C / (h * h);
-  const Vec3d bevel = cuts ? bevel_force() : Vec3d{};
+  const Vec3d bevel = cuts && s.step_h > 0.0 ? bevel_force() : Vec3d{};
   const double again = s.step_h > 0.0 ? h / s.step_h : 0.0;  // the last step's forces are a good start
   for (std::size_t j = 0; j < all.size(); ++j) {
     const bool is_tip = j >= node.size();
-    if (j < b.held) b.off.push_back(off_by(j)), b.more.push_back(cuts ? bevel * bevel_moves(b, j) : Vec3d{});
     b.sinks.push_back(sink_along(is_tip));
-    b.closing.push_back(is_tip ? tip_slip() : 0.0);
     b.limits.push_back(limit_of(j));
     b.along.push_back(again * (is_tip ? s.tip_along : s.along[node[j]]));
   }
   b.across.resize(all.size());
   if (cuts) b.across.back() = bevel * -h;
-  if (b.held > 0) {
-    const auto n = static_cast<Eigen::Index>(b.held);
-    b.slack = kSlack * b.W.topLeftCorner(n, n).diagonal().mean() + kLeastMobility;
-  }
+  step.is_long ? set_long(b, bevel) : set_short(step, b, bevel);
   return b;
+}
+
+/// What the rows of a short step move one another by, and make up for: errors of position in part, so that nothing rings.
+void Needle::Solver::set_short(const InteractionStep& step, shaft::Block& b, const Vec3d& bevel) const {
+  b.W = s.mobility.of(step, s.nodes, node, has_tip ? &s.tip : nullptr);
+  for (std::size_t j = 0; j < all.size(); ++j) {
+    if (j < b.held)
+      b.off.push_back(off_by(j)), b.more.push_back(b.held < all.size() ? bevel * bevel_moves(b, j) : Vec3d{});
+    b.closing.push_back(j >= node.size() ? tip_slip() : 0.0);
+  }
+  if (b.held == 0) return;
+  const auto n = static_cast<Eigen::Index>(b.held);
+  b.slack = kSlack * b.W.topLeftCorner(n, n).diagonal().mean() + kLeastMobility;
+}
+
+/// The same in a long step, at the end of which the tissue is on the bent needle; a row that goes from sticking to slip too often
+/// slips.
+void Needle::Solver::set_long(shaft::Block& b, const Vec3d& bevel) const {
+  s.breaks.resize(s.nodes.size(), 0), s.stuck.resize(s.nodes.size(), 0);
+  b.slack_share = kSlack;
+  for (std::size_t j = 0; j < all.size(); ++j) {
+    const bool is_tip = j >= node.size();
+    if (j < b.held) {
+      b.off.push_back(-across(all[j]->position - before, d));
+      b.more.push_back(bevel * C(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(all.size() - 1)));
+      if (b.held == all.size()) b.more.back() = {};
+    }
+    b.closing.push_back(is_tip ? tip_gap / h : 0.0);
+    if (!is_tip && s.breaks[node[j]] >= kMostBreaks) b.limits[j].slips = true;
+  }
 }
 
 /// What a step makes up for at a held row, beside velocities [m].
@@ -228,18 +272,17 @@ void Needle::declare(const InteractionStep& step, StepRows& rows, int round) {
   if (round > 0) return;
   drive(step);
   State& s = *state_;
+  ToolYield* const yields = rows.group().yields = find_end(step);
   s.solver = std::make_unique<Solver>(
       Solver{.s = s, .d = direction(), .before = before_.position, .after = pose_.position, .h = step.h});
   s.solver->find_rows(step);
   if (s.solver->all.empty()) return;
-  if (step.compliance == nullptr) {
-    rows.group().shaft = s.solver->block(step, velocity_at(before_.position));
-  } else {
-    s.solver->solve_long(step, velocity_at(before_.position));
-  }
+  rows.group().shaft = s.solver->block(step, velocity_at(before_.position));
+  rows.group().shaft->yields = yields;
 }
 
 void Needle::solved(const InteractionStep& step, const StepRows& rows) {
+  move_to_end();
   forces_ = {};
   State& s = *state_;
   const std::unique_ptr<Solver> solver = std::move(s.solver);
@@ -247,29 +290,68 @@ void Needle::solved(const InteractionStep& step, const StepRows& rows) {
     s.forget_forces(step.h);
     return;
   }
-  if (step.compliance == nullptr) solver->keep(*rows.group().shaft);
-  const Solver::Impulses& p = solver->found;
-  if (step.interface_book != nullptr) s.bending = solver->bending_energy(p.across);
+  const shaft::Block& block = *rows.group().shaft;
+  solver->after = pose_.position;
+  solver->keep(step, block);
+  if (step.interface_book != nullptr) s.bending = solver->bending_energy(block.across);
   s.step_h = step.h;
   for (std::size_t j = 0; j < solver->all.size(); ++j) {
-    const Vec3d lengthways = direction() * p.along[j];
+    const Vec3d lengthways = direction() * block.along[j];
     const bool is_tip = j >= solver->node.size();
-    forces_.normal += p.across[j] * (1.0 / step.h);
+    forces_.normal += block.across[j] * (1.0 / step.h);
     (is_tip ? (s.stage == NeedleStage::inside ? forces_.cutting : forces_.normal) : forces_.friction) +=
         lengthways * (1.0 / step.h);
     const Vec3d at =
         forces_at_end() ? solver->all[j]->position + solver->all[j]->velocity * step.h : solver->all[j]->position;
-    forces_.torque += cross(at - force_pose().position, (p.across[j] + lengthways) * (1.0 / step.h));
+    forces_.torque += cross(at - force_pose().position, (block.across[j] + lengthways) * (1.0 / step.h));
   }
 }
 
-/// Keeps what the block of a short step has found.
-void Needle::Solver::keep(const shaft::Block& block) {
+/// Keeps what the block has found; of a long step how far the needle passes its nodes, too.
+void Needle::Solver::keep(const InteractionStep& step, const shaft::Block& block) {
   bend(block.across);
+  if (step.is_long) count_breaks(block);
   keep_along(block.along, block.slips);
-  found = {block.across, block.along};
+  if (!step.is_long) return;
+  s.ways.resize(s.nodes.size());
+  for (const std::size_t j : node) {
+    shaft::read(step, s.nodes[j]);
+    s.ways[j].used = way_past(j);
+    s.ways[j].take(dot(needle_velocity() - s.nodes[j].velocity, d) * h);
+  }
+  if (has_tip) shaft::read(step, s.tip);
+}
+
+/// How often rows come from sticking to slip between iterations of a step.
+void Needle::Solver::count_breaks(const shaft::Block& block) {
+  for (std::size_t j = 0; j < node.size(); ++j) {
+    if (s.stuck[node[j]] != 0 && block.slips[j] != 0) ++s.breaks[node[j]];
+    s.stuck[node[j]] = block.slips[j] == 0;
+  }
 }
 
 int Needle::most_drag_stages() const { return kMostDragStagesBesideInstruments; }
+
+std::string Needle::refuses_long_steps() const { return driver_refuses_long_steps(); }
+
+/// Tries what comes after the step: events that are to be dated, and a path that grows past what its friction was found for.
+bool Needle::overshoots(const InteractionStep& step) {
+  const std::shared_ptr<const void> before = save_state();
+  const std::size_t events_before = events().size();
+  const bool was_held = state_->at_membrane || state_->next_region.has_value();
+  const NeedleStage stage_before = state_->stage;
+  const Vec3d end = state_->tip.rest;
+  state_->tries = true;
+  moved(step);
+  state_->tries = false;
+  const State& s = *state_;
+  bool over = !was_held && (s.at_membrane || s.next_region.has_value());
+  for (std::size_t k = events_before; k < events().size(); ++k) over = over || events()[k].event != "drop";
+  if (stage_before == NeedleStage::inside && s.stage == NeedleStage::inside) {
+    over = over || norm(s.tip.rest - end) > kMostGrowth * s.options.spacing;
+  }
+  load_state(before, nullptr);
+  return over;
+}
 
 }  // namespace glisson

@@ -24,32 +24,21 @@ struct Needle::Solver {
   Vec3d needle_velocity() const { return (after - before) * (1.0 / h); }
   void find_rows(const InteractionStep& step);
   double way_past(std::size_t node) const;
-  /// The rows as a block of a short step. @param tool  velocity of the needle, for the ledger
+  /// The rows as a block. @param tool  velocity of the needle, for the ledger
   shaft::Block block(const InteractionStep& step, const ToolVelocity& tool);
   /// Keeps what that has found.
-  void keep(const shaft::Block& block);
-  /// What a row exerts in a step [N s].
-  struct Impulses {
-    std::vector<Vec3d> across;
-    std::vector<double> along;
-  };
-  Impulses found{};
+  void keep(const InteractionStep& step, const shaft::Block& block);
   Eigen::MatrixXd C{};  ///< deflections of the needle at the rows by forces at them [m/N]
-  /// Finds them in a long step, where the rows move one another in all directions.
-  void solve_long(const InteractionStep& step, const ToolVelocity& tool);
   double bending_energy(std::span<const Vec3d> sideways) const;
 
  private:
-  struct LongRows;
-  LongRows long_rows(const InteractionStep& step);
-  double set_across(LongRows& rows) const;
-  std::vector<double> along_in_long(const LongRows& rows, const Eigen::MatrixXd& D, const Eigen::VectorXd& speed);
-  void hand_out(const InteractionStep& step, const LongRows& rows, const Impulses& p);
+  void set_short(const InteractionStep& step, shaft::Block& block, const Vec3d& bevel) const;
+  void set_long(shaft::Block& block, const Vec3d& bevel) const;
+  void count_breaks(const shaft::Block& block);
   double tip_slip() const;
   Vec3d off_by(std::size_t j) const;
   double bevel_moves(const shaft::Block& block, std::size_t j) const;
   WorkSink sink_along(bool is_tip) const;
-  void book(const InteractionStep& step, const Impulses& p, const ToolVelocity& tool) const;
   Vec3d bevel_force() const;
   void keep_along(std::span<const double> p, std::span<const char> slips);
   void bend(std::span<const Vec3d> impulse);

@@ -88,9 +88,15 @@ struct Needle::State : NeedleKept {
   // the path
   std::vector<int> breaks;  ///< per node: how often it came from sticking to slip while a long step was solved for
   std::vector<char> stuck;  ///< per node: in the last iteration of a long step
-  std::vector<double>
-      ways;            ///< per node: by how much the needle passes it in a long step, as found last [m]; NaN: not found
-  bool tries = false;  ///< what comes after a long step is tried, and taken back
+  /// By how much the needle passes a node in a long step, which the lengths of shaft follow, as iterations find it.
+  struct Way {
+    std::optional<double> next{};               ///< to go on with [m]; none: not found yet
+    double used = 0.0, last_used = 0.0;         ///< in this iteration and the last …
+    std::optional<double> found{}, last_found;  ///< … and what came of it
+    void take(double way);
+  };
+  std::vector<Way> ways;  ///< per node
+  bool tries = false;     ///< what comes after a long step is tried, and taken back
   shaft::MobilityMatrix mobility;
   Vec3d tip_velocity{};                  ///< of the tissue at the tip before the step [m/s]
   std::vector<InnerMembrane> membranes;  ///< given and drawn, by ascending depth

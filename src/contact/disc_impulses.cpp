@@ -1,4 +1,4 @@
-#include "instruments/cutting/disc_impulses.h"
+#include "contact/disc_impulses.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -8,13 +8,13 @@
 namespace glisson {
 namespace {
 
-constexpr int kMostSweeps = 4000;
-constexpr double kSettled = 1e-11;  ///< change of a velocity in a sweep, of the largest to be stopped
-constexpr int kTogether = 5;        ///< sweeps, after which all points are solved for together
+constexpr int kMostDiscSweeps = 4000;
+constexpr double kDiscsSettled = 1e-11;  ///< change of a velocity in a sweep, of the largest to be stopped
+constexpr int kDiscsTogether = 5;        ///< sweeps, after which all points are solved for together
 constexpr double kRidge =
     1e-12;  ///< of the mean of W, on its diagonal: points that nearly coincide share what they get
 constexpr double kLeastShare = 1e-4;  ///< of a step that is tried
-constexpr int kMostIterations = 40;
+constexpr int kMostDiscIterations = 40;
 constexpr double kOpen = 1e-12;  ///< of the larger eigenvalue: one that is below it moves nothing
 
 Eigen::Vector2d put_within(const Eigen::Vector2d& J, double most) {
@@ -80,7 +80,7 @@ Eigen::Vector2d within_disc(const Eigen::Matrix2d& A, const Eigen::Vector2d& r, 
   if (!held && J.norm() <= most) return own.eigenvectors() * J;
   // (A + λ) J = r with |J| = L: Newton's method on 1/|J| − 1/L, from below, where it stays; |J| ≥ |J_i|
   double lambda = std::max({0.0, speed / most - a[1], std::abs(q[0]) / most - a[0], std::abs(q[1]) / most - a[1]});
-  for (int k = 0; k < kMostIterations; ++k) {
+  for (int k = 0; k < kMostDiscIterations; ++k) {
     const Eigen::Vector2d shifted = (a.array() + lambda).max(1e-300);
     J = q.cwiseQuotient(shifted);
     const double size = J.norm();
@@ -100,8 +100,8 @@ int solve_within_discs(const Eigen::MatrixXd& W, const Eigen::VectorXd& r, std::
   }
   Eigen::VectorXd slip = r - W * J;
   int sweep = 0;
-  for (double change = speed; change > kSettled * speed && sweep < kMostSweeps; ++sweep) {
-    if (sweep % kTogether == kTogether - 1) solve_together(W, most, J, slip);
+  for (double change = speed; change > kDiscsSettled * speed && sweep < kMostDiscSweeps; ++sweep) {
+    if (sweep % kDiscsTogether == kDiscsTogether - 1) solve_together(W, most, J, slip);
     change = 0.0;
     for (std::size_t j = 0; j < most.size(); ++j) {
       const auto at = static_cast<Eigen::Index>(2 * j);
