@@ -261,6 +261,7 @@ GreyImage read_grey(const ByteSource& source, const ReadImageOptions& options) {
                  "write the image with larger voxels, or a part of it");
   return read_window<GreyImage>(header, {{}, header.grid.size}, [&](double value, std::size_t i, std::size_t row) {
     if (std::abs(value) <= std::numeric_limits<float>::max()) return static_cast<float>(value);
+    if (options.gaps && std::isnan(value)) return std::numeric_limits<float>::quiet_NaN();
     fail(header.data, "voxel " + std::to_string(i) + " of row " + std::to_string(row + 1) + " is " +
                           detail::show(value) + ", which is no finite number of single precision");
   });
