@@ -363,4 +363,14 @@ LabelFields smooth_fields(const GroupImage& from, const SmoothingOptions& option
   return out;
 }
 
+BodyRegion field_region(const std::string& name, std::shared_ptr<const SplineField> field, const Bounds& box) {
+  const auto distance = [field = std::move(field), box](const Vec3d& p) {
+    Vec3d beyond{};
+    for (std::size_t a = 0; a < 3; ++a) beyond[a] = std::max({box.min[a] - p[a], 0.0, p[a] - box.max[a]});
+    const double outside = norm(beyond);
+    return outside > 0.0 ? std::max(field->at(p), outside) : field->at(p);
+  };
+  return {name, distance, box, false};
+}
+
 }  // namespace glisson::image

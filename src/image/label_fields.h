@@ -31,6 +31,9 @@ struct LabelFields {
   std::size_t changed_voxels = 0;                          ///< whose centre is in another group than the voxel
 };
 
+/// A region where a field is below 0; outside of its box that is at least the distance from there.
+BodyRegion field_region(const std::string& name, std::shared_ptr<const SplineField> field, const Bounds& box);
+
 /// Values of labels beyond the image are those at its border.
 /// Cost: some 60 ns a voxel, group and round.
 LabelFields smooth_fields(const GroupImage& image, const SmoothingOptions& options);

@@ -262,7 +262,7 @@ void complete_surfaces(ImplicitBody& body, const Node& experiment, const std::fi
 /// Looks whether an image is there and has the labels' names.
 void complete_image(ImageBody& body, const Node& experiment, const std::filesystem::path& base, Problems& problems) {
   const Node& mesh = *experiment.find("mesh");
-  if (body.path.is_relative()) body.path = base / body.path;
+  resolve_paths(body, base);
   try {
     image_set_names(body);
   } catch (const ImageError& error) {

@@ -16,6 +16,12 @@ enum class VoxelValues {
   displacement,  ///< the same as a displacement in mm: intent 1006; ITK 5.3 and later turn it into LPS as they read
   symmetric      ///< xx, xy, yy, xz, yz, zz along RAS: intent 1007, for SimpleITK refuses 1005, that of such matrices
 };
+template <>
+inline constexpr Word<VoxelValues> kWords<VoxelValues>[] = {
+    {"plain", VoxelValues::plain, "numbers without a direction"},
+    {"vector", VoxelValues::vector, "three components along RAS"},
+    {"displacement", VoxelValues::displacement, "three components along RAS, in mm"},
+    {"symmetric", VoxelValues::symmetric, "xx, xy, yy, xz, yz, zz along RAS"}};
 
 /// Writes values as `float`. The sform is the grid; the qform is the same, or is left out where the axes are not at right angles.
 /// @param description  at most 79 bytes, as "stress Pa"

@@ -9,8 +9,8 @@
 #include <set>
 
 #include "base/available_memory.h"
-#include "base/nearest.h"
 #include "base/text.h"
+#include "image/labels_of_body.h"
 #include "image/read/image_header.h"
 
 namespace glisson::image {
@@ -196,15 +196,8 @@ Window box_of_labels(const ImageHeader& header, const ReadImageOptions& options)
     }
   }
   for (const int label : wanted) {
-    if (found.contains(label)) continue;
-    std::vector<std::string> there;
-    for (const int f : found) {
-      const auto name = header.names.find(f);
-      there.push_back(std::to_string(f) + (name == header.names.end() ? "" : " " + name->second));
-      if (there.size() == 100) break;
-    }
-    fail(header.data, "no voxel has the label " + std::to_string(label) +
-                          (there.empty() ? "; all are 0" : "; there are: " + scene::listed(there)));
+    if (!found.contains(label))
+      fail_without_label(header.data.file.string(), label, header.names, std::vector<int>(found.begin(), found.end()));
   }
   Window window;
   for (std::size_t a = 0; a < 3; ++a) {
