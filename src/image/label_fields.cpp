@@ -11,9 +11,9 @@ namespace glisson::image {
 namespace {
 
 constexpr std::size_t kPad = 4;       ///< voxels around the image
-constexpr int kSub = 2;               ///< points a voxel's edge where volumes are counted
+constexpr int kSub = 4;               ///< points a voxel's edge where volumes are counted
 constexpr int kLastRounds = 4;        ///< without smoothing: volumes and voxels alone
-constexpr int kCorrections = 2;       ///< of volumes by those of the splines
+constexpr int kCorrections = 5;       ///< of volumes by those of the splines
 constexpr double kVolumeShare = 0.8;  ///< of the shift that would bring the volume at once
 constexpr double kMostShift = 0.25;   ///< of it in a round, in voxels
 

@@ -27,7 +27,7 @@ struct SmoothingOptions {
 struct LabelFields {
   std::vector<std::shared_ptr<const SplineField>> fields;  ///< f of each group [m]
   std::vector<Bounds> bounds;                              ///< of each group [m]
-  std::vector<double> volumes;                             ///< that f bounds, by 27 points a voxel [m³]
+  std::vector<double> volumes;                             ///< that f bounds, by 64 points a voxel [m³]
   std::size_t changed_voxels = 0;                          ///< whose centre is in another group than the voxel
 };
 

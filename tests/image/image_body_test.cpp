@@ -119,7 +119,7 @@ TEST_F(ImageBodies, CutOrganIsClosedFlat) {
               testing::Contains(HasSubstr("the image ends in the body at its last k; it is closed flat there")));
 }
 
-// An implanted ball of 18 mm has its volume of 3.05 mL within 3 %, the first free number, and is taken from the organ around it.
+// An implanted ball of 18 mm has its volume of 3.05 mL within 5 %, the bar below 5 mL, the first free number, and is taken from the organ around it.
 TEST_F(ImageBodies, ImplantedBall) {
   ImageBody body = two_halves();
   body.implants = {"tumour=ball:35,43.5,56,18mm"};
@@ -130,7 +130,7 @@ TEST_F(ImageBodies, ImplantedBall) {
   EXPECT_EQ(tumour.name, "tumour");
   EXPECT_EQ(tumour.label, 31);
   EXPECT_NEAR(1e6 * tumour.image_volume, 3.0536, 1e-4);
-  EXPECT_NEAR(tumour.volume / tumour.image_volume, 1.0, 0.03);
+  EXPECT_NEAR(tumour.volume / tumour.image_volume, 1.0, 0.05);
   const ImageMesh without = image_mesh(two_halves());
   double sum = 0.0, sum_without = 0.0;
   for (const ImageRegion& r : made.regions) sum += r.image_volume;
@@ -246,6 +246,26 @@ TEST_F(ImageBodies, TornVesselIsRefined) {
   body.refine = false;
   body.edges_across = 1.5;
   EXPECT_EQ(image_mesh(body).regions[1].pieces, 1u);
+}
+
+// Sheets, threads and specks of one voxel keep the volume of their voxels within 5 %: with 8 points a voxel by which volumes are counted, a thread
+// got a third more, and edges were halved until nothing was won.
+TEST_F(ImageBodies, ThinPartsKeepTheirVolume) {
+  const auto label = [](int i, int j, int k) {
+    if (k == 10 && i > 4 && i < 26 && j > 4 && j < 20) return 1;              // a sheet
+    if (j == 12 && k == 16 && i > 3 && i < 27) return 2;                      // a thread
+    if (i == 14 && j == 8 && k == 20) return 3;                               // a speck
+    if (i + j == 30 && k == 4 && i > 8 && i < 22) return 4;                   // voxels that touch at edges: one is kept
+    return std::abs(i - 15) < 11 && std::abs(j - 12) < 9 && k == 13 ? 5 : 0;  // a sheet beside it
+  };
+  const ImageMesh made = image_mesh({.path = write("thin.mha", meta_image({30, 26, 24}, 1.0, label)),
+                                     .labels = {"sheet=1", "thread=2", "speck=3", "steps=4", "cover=5"},
+                                     .edge = 0.0025});
+  expect_sound(made.mesh);
+  for (const ImageRegion& r : made.regions) {
+    EXPECT_NEAR(r.volume / r.image_volume, 1.0, 0.05) << r.name;
+    EXPECT_EQ(r.pieces, r.image_pieces) << r.name;
+  }
 }
 
 // A sheared grid meshes as one at right angles does: the volume is that of the voxels.
