@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -54,6 +55,9 @@ class VoxelPlaces {
   /// @throws std::invalid_argument for regions that are no labels: below 0, above 65535
   LabelImage labels(std::uint16_t outside = 0) const;
 
+  /// Calls visit(voxel of the grid, tet) for each voxel in the body.
+  void each_voxel(const std::function<void(std::size_t, std::uint32_t)>& visit) const;
+
  private:
   static constexpr std::uint32_t kNone = 0xffffffff;
   struct Chart;
@@ -75,5 +79,9 @@ class VoxelPlaces {
   std::vector<std::uint32_t> tet_of_;          ///< of each voxel in that box; kNone: outside
   std::size_t inside_ = 0;
 };
+
+/// The mean of an image over each tet of a mesh: over the voxels whose centres it holds, of a tet that holds none the value at its middle, linear
+/// between voxels. NaN where the image has none.
+std::vector<double> tet_means(const TetMesh& mesh, const GreyImage& image);
 
 }  // namespace glisson

@@ -205,4 +205,62 @@ LabelImage VoxelPlaces::labels(std::uint16_t outside) const {
   return image;
 }
 
+void VoxelPlaces::each_voxel(const std::function<void(std::size_t, std::uint32_t)>& visit) const {
+  each_inside([&](std::size_t voxel, std::uint32_t tet, const Vec3d&) { visit(voxel, tet); });
+}
+
+namespace {
+
+/// Linear between voxels; those without a value are left out. NaN outside of the image, and where no voxel has a value.
+double value_between(const GreyImage& image, const Vec3d& p) {
+  const Vec3d index = image.grid.index(p);
+  std::array<std::size_t, 3> low{};
+  std::array<double, 3> t{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double last = static_cast<double>(image.grid.size[a] - 1);
+    if (!(index[a] >= -0.5 && index[a] <= last + 0.5)) return std::numeric_limits<double>::quiet_NaN();
+    const double x = std::clamp(index[a], 0.0, last);
+    low[a] = std::min(static_cast<std::size_t>(x), image.grid.size[a] - 1);
+    t[a] = x - static_cast<double>(low[a]);
+  }
+  double sum = 0.0, weights = 0.0;
+  for (std::size_t c = 0; c < 8; ++c) {
+    double w = 1.0;
+    std::array<std::size_t, 3> at{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      w *= (c >> a) & 1 ? t[a] : 1.0 - t[a];
+      at[a] = std::min(low[a] + ((c >> a) & 1), image.grid.size[a] - 1);
+    }
+    const double value = image.voxels[image.grid.at(at[0], at[1], at[2])];
+    if (std::isnan(value)) continue;
+    sum += w * value;
+    weights += w;
+  }
+  return weights > 0.0 ? sum / weights : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
+
+std::vector<double> tet_means(const TetMesh& mesh, const GreyImage& image) {
+  std::vector<double> sums(mesh.tets.size(), 0.0), counts(mesh.tets.size(), 0.0);
+  std::vector<char> held(mesh.tets.size(), 0);
+  VoxelPlaces(mesh, image.grid).each_voxel([&](std::size_t voxel, std::uint32_t tet) {
+    held[tet] = 1;
+    const double value = image.voxels[voxel];
+    if (std::isnan(value)) return;
+    sums[tet] += value;
+    counts[tet] += 1.0;
+  });
+  for (std::size_t t = 0; t < sums.size(); ++t) {
+    if (held[t] != 0) {
+      sums[t] = counts[t] > 0.0 ? sums[t] / counts[t] : std::numeric_limits<double>::quiet_NaN();
+      continue;
+    }
+    Vec3d middle{};
+    for (const std::uint32_t v : mesh.tets[t]) middle += mesh.vertices[v] * 0.25;
+    sums[t] = value_between(image, middle);
+  }
+  return sums;
+}
+
 }  // namespace glisson
