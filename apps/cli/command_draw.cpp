@@ -10,8 +10,6 @@
 namespace glisson::app {
 namespace {
 
-using nlohmann::json;
-
 constexpr const char* kPlotFooter =
     "Writes each chart of OUT/report.html to OUT/plots/TITLE.svg (.png, .pdf), with the lines, names and marks of the "
     "report.\n"
@@ -50,13 +48,13 @@ struct PlotOptions {
   bool svg = false, png = false, pdf = false;
 };
 
-json plot_json(const PlotOptions& options) {
-  json formats = json::array();
+nlohmann::json plot_json(const PlotOptions& options) {
+  nlohmann::json formats = nlohmann::json::array();
   if (options.svg || (!options.png && !options.pdf)) formats.push_back("svg");
   if (options.png) formats.push_back("png");
   if (options.pdf) formats.push_back("pdf");
   const auto [width, height] = two_of<double>("--size-mm", options.size);
-  json wanted{{"kind", "plot"}, {"out", options.out}, {"formats", formats}, {"size_mm", {width, height}}};
+  nlohmann::json wanted{{"kind", "plot"}, {"out", options.out}, {"formats", formats}, {"size_mm", {width, height}}};
   if (!options.folder.empty()) wanted["folder"] = options.folder;
   if (!options.chart.empty()) wanted["chart"] = options.chart;
   if (!options.variants.empty()) wanted["variants"] = options.variants;
@@ -71,17 +69,17 @@ struct PictureOptions {
   bool flip = false, bare = false, no_tools = false;
 };
 
-json picture_json(const PictureOptions& options) {
+nlohmann::json picture_json(const PictureOptions& options) {
   const auto [width, height] = two_of<int>("--size", options.size);
-  json wanted{{"kind", "picture"},
-              {"out", options.out},
-              {"frame", options.frame},
-              {"colour", options.colour},
-              {"flip", options.flip},
-              {"size", {width, height}},
-              {"exaggerate", options.exaggerate},
-              {"labels", !options.bare},
-              {"tools", !options.no_tools}};
+  nlohmann::json wanted{{"kind", "picture"},
+                        {"out", options.out},
+                        {"frame", options.frame},
+                        {"colour", options.colour},
+                        {"flip", options.flip},
+                        {"size", {width, height}},
+                        {"exaggerate", options.exaggerate},
+                        {"labels", !options.bare},
+                        {"tools", !options.no_tools}};
   wanted["file"] = options.file.empty() ? options.out + "/picture.png" : options.file;
   if (!options.variant.empty()) wanted["variant"] = options.variant;
   if (!options.cut.empty()) wanted["cut"] = options.cut;

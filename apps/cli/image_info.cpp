@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
@@ -109,19 +111,24 @@ Json labels_json(const LabelImage& image, const std::vector<LabelFigures>& label
 
 /// @param why  it is none of labels
 int grey_info(const std::string& file, bool as_json, const std::string& why) {
-  const GreyImage image = read_grey_image(file);
-  const auto [low, high] = std::minmax_element(image.voxels.begin(), image.voxels.end());
-  const double mean =
-      std::accumulate(image.voxels.begin(), image.voxels.end(), 0.0) / static_cast<double>(image.voxels.size());
+  const GreyImage image = read_grey_image(file, {.gaps = true});
+  std::vector<float> values = image.voxels;
+  std::erase_if(values, [](float v) { return std::isnan(v); });
+  const std::size_t without = image.voxels.size() - values.size();
+  if (values.empty()) values.push_back(std::numeric_limits<float>::quiet_NaN());
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
   if (as_json) {
     Json json = frame_json(file, image, "grey");
-    json["least"] = *low, json["largest"] = *high, json["mean"] = mean;
+    json["least"] = *low, json["largest"] = *high, json["mean"] = mean, json["voxels_without_value"] = without;
     json["no_labels_because"] = why;
     say("{}\n", json_text(json, 2));
     return kDone;
   }
   say_frame(file, image, "grey");
-  say("  values {:.6g} to {:.6g}, mean {:.6g}\n  no image of labels: {}\n", *low, *high, mean, why);
+  say("  values {:.6g} to {:.6g}, mean {:.6g}\n", *low, *high, mean);
+  if (without > 0) say("  {} of {} voxels have no value (NaN)\n", without, image.voxels.size());
+  say("  no image of labels: {}\n", why);
   return kDone;
 }
 

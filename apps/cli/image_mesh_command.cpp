@@ -21,6 +21,7 @@ namespace glisson::app {
 namespace {
 
 constexpr double kVoxelsAnEdge = 2.0;  ///< where no edge is given
+constexpr const char* kImageGroup = "Images";
 
 /// `REGION=MM` of --near.
 MeshSize size_of(const std::string& word) {
@@ -54,6 +55,7 @@ ImageBody body_of(const std::string& file, const ImageMeshOptions& options, std:
   if (options.largest_hole_ml) body.largest_hole_ml = *options.largest_hole_ml;
   if (options.smoothing) body.smoothing = *options.smoothing;
   if (options.edges_across) body.edges_across = *options.edges_across;
+  body.size_image = options.size_image;
   body.refine = !options.no_refine;
   for (const std::string& word : options.near) body.sizes.push_back(size_of(word));
   body.edge = edge_mm ? 1e-3 * *edge_mm : kVoxelsAnEdge * voxel_edge(body);
@@ -120,63 +122,47 @@ ImageMesh made_of(const ImageBody& body, bool quiet) {
 }  // namespace
 
 void add_image_mesh_options(CLI::App& command, ImageMeshOptions& options) {
-  const char* group = "Images";
+  const std::string others = command.option_defaults()->get_group();
+  command.option_defaults()->group(kImageGroup);
+  options.command = &command;
   command
       .add_option("--labels", options.labels,
                   "regions: numbers or names of labels, joined by +, with a name in front: liver,vessels=63+64")
       ->delimiter(',')
-      ->type_name("L,…")
-      ->group(group);
+      ->type_name("L,…");
   command
-      .add_option(
-          "--implant", options.implants,
-          "NAME=ball:X,Y,Z,DIAMETERmm or NAME=ellipsoid:X,Y,Z,A,B,Cmm (semi-axes), RAS in mm; may be given again")
+      .add_option("--implant", options.implants,
+                  "NAME=ball:X,Y,Z,DIAMETERmm, NAME=ellipsoid:X,Y,Z,A,B,Cmm (semi-axes), RAS in mm, or "
+                  "NAME=labels:FILE:LABELS of another image; may be given again")
       ->type_name("NAME=SHAPE")
-      ->allow_extra_args(false)
-      ->group(group);
+      ->allow_extra_args(false);
   command.add_option("--near", options.near, "shorter edges in a region and around it; may be given again")
       ->type_name("REGION=MM")
-      ->allow_extra_args(false)
-      ->group(group);
-  command.add_option("--voxel-mm", options.voxel_mm, "resample to cubes of this edge first")
-      ->type_name("V")
-      ->group(group);
+      ->allow_extra_args(false);
+  command.add_option("--voxel-mm", options.voxel_mm, "resample to cubes of this edge first")->type_name("V");
   command.add_option("--keep-pieces", options.keep_pieces, "of each region the largest so many; 0: all")
-      ->type_name("N")
-      ->group(group);
+      ->type_name("N");
   command.add_option("--smallest-piece-ml", options.smallest_piece_ml, "smaller pieces are dropped (0.1)")
-      ->type_name("ML")
-      ->group(group);
-  command.add_option("--largest-hole-ml", options.largest_hole_ml, "holes up to that are filled (1)")
-      ->type_name("ML")
-      ->group(group);
+      ->type_name("ML");
+  command.add_option("--largest-hole-ml", options.largest_hole_ml, "holes up to that are filled (1)")->type_name("ML");
   command.add_option("--smoothing", options.smoothing, "rounds of smoothing that keep volumes and voxels (2); 0: none")
-      ->type_name("N")
-      ->group(group);
+      ->type_name("N");
   command
       .add_option("--edges-across", options.edges_across,
                   "edges across vessels and sheets, shorter there; 0: as elsewhere")
-      ->type_name("N")
-      ->group(group);
-  command.add_flag("--no-refine", options.no_refine, "leave regions that come out torn or off in volume as they are")
-      ->group(group);
+      ->type_name("N");
+  command.add_option("--size-image", options.size_image, "an image of wanted edges in mm, on any grid")
+      ->type_name("FILE");
+  command.add_flag("--no-refine", options.no_refine, "leave regions that come out torn or off in volume as they are");
+  command.option_defaults()->group(others);
 }
 
-void refuse_image_options(const ImageMeshOptions& o) {
-  const std::pair<const char*, bool> given[] = {{"--labels", !o.labels.empty()},
-                                                {"--implant", !o.implants.empty()},
-                                                {"--near", !o.near.empty()},
-                                                {"--voxel-mm", o.voxel_mm.has_value()},
-                                                {"--keep-pieces", o.keep_pieces.has_value()},
-                                                {"--smallest-piece-ml", o.smallest_piece_ml.has_value()},
-                                                {"--largest-hole-ml", o.largest_hole_ml.has_value()},
-                                                {"--smoothing", o.smoothing.has_value()},
-                                                {"--edges-across", o.edges_across.has_value()},
-                                                {"--no-refine", o.no_refine}};
-  for (const auto& [name, is_given] : given) {
-    if (is_given)
+void refuse_image_options(const ImageMeshOptions& options) {
+  const auto of_images = [](const CLI::Option* option) { return option->get_group() == kImageGroup; };
+  for (const CLI::Option* option : options.command->get_options(of_images)) {
+    if (option->count() > 0)
       throw std::invalid_argument(
-          std::string(name) + " is for images (.nii, .nii.gz, .nrrd, .nhdr, .mha, .mhd); a scene has keys of [mesh]");
+          option->get_name() + " is for images (.nii, .nii.gz, .nrrd, .nhdr, .mha, .mhd); a scene has keys of [mesh]");
   }
 }
 

@@ -11,9 +11,11 @@ namespace glisson::app {
 /// What only images have.
 struct ImageMeshOptions {
   std::vector<std::string> labels, implants, near;
+  std::string size_image;
   std::optional<double> voxel_mm, smallest_piece_ml, largest_hole_ml, edges_across;
   std::optional<int> keep_pieces, smoothing;
   bool no_refine = false;
+  const CLI::App* command = nullptr;  ///< that has them all, in a group of their own
 };
 
 /// What all meshes have.

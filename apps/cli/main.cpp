@@ -40,6 +40,7 @@ constexpr const char* kFooter =
     "  glisson picture out/my_scene             the body at one instant, without a display\n"
     "  glisson mesh my_scene.toml --out b.vtu   write the mesh of a scene, and its figures\n"
     "  glisson info organ.vtu                   contents and defects of a mesh file, labels of an image\n"
+    "  glisson image out/my_scene --like ct.nii.gz --field displacement --out u.nii.gz   a result on a CT's voxels\n"
     "  glisson bench --quick                    what a step costs on this machine\n"
     "\n"
     "See also `glisson COMMAND --help`. Exit status: 0 done, 1 failed, 2 a scene, mesh or option that cannot be\n"
@@ -105,6 +106,7 @@ int run_program(int argc, char** argv) {
   add_compare(program, action);
   add_mesh(program, action);
   add_info(program, action);
+  add_image(program, action);
   add_reproduce(program, action);
   add_schema(program, action);
   add_laws(program, action);

@@ -70,6 +70,7 @@ std::vector<std::pair<double, std::filesystem::path>> read_pvd(const std::filesy
 struct ReadFrame {
   TetMesh mesh;  ///< as stored: in frames of a run at rest [m], with the array displacement_m
   std::vector<Field> vertex_fields, tet_fields;
+  std::vector<std::string> arrays{};  ///< names of those of the file, on vertices and then on tets, without sets
 };
 /// Reads a .vtu that has only tetrahedra, without changes, and those of the named fields that it has.
 /// @throws FileError if the file cannot be used as it is

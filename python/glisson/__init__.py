@@ -17,7 +17,7 @@ cannot be made raises StepError with the way out.
 from __future__ import annotations
 
 from ._core import *  # all that is bound
-from . import plot
+from . import image, plot
 from ._version import VERSION
 from .driving import FunctionDriver
 from .fitting import FitResult, TestFit, fit, known_laws

@@ -184,7 +184,10 @@ class Options : public nb::class_<T> {
   void add(const char* name, M member, const FieldText& field) {
     const std::string text = docstring(doc(of_ + "::" + name), field);
     name = python_name(name);
-    this->def_rw(name, member, text.c_str());
+    if constexpr (requires(T options) { (options.*member).use_count(); })  // a shared object, or none
+      this->def_rw(name, member, nb::for_setter(nb::arg().none()), text.c_str());
+    else
+      this->def_rw(name, member, text.c_str());
     add_member(*this, "_fields", name);
   }
 

@@ -22,4 +22,5 @@ NB_MODULE(_core, m) {
   py::bind_scenes(m);
   py::bind_results(m);
   py::bind_heat(m);
+  py::bind_images(m);
 }

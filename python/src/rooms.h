@@ -18,6 +18,7 @@ void bind_cutting(nanobind::module_& m);
 void bind_probes(nanobind::module_& m);
 void bind_results(nanobind::module_& m);
 void bind_heat(nanobind::module_& m);
+void bind_images(nanobind::module_& m);
 
 class LiveSimulation;
 /// States in memory, as members of Simulation.

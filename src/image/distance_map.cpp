@@ -1,6 +1,7 @@
 // distance_map.cpp — see distance_map.h.
 #include "image/distance_map.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 

@@ -11,9 +11,12 @@
 #include "base/text.h"
 #include "glisson/image/read_image.h"
 #include "image/body_sets.h"
+#include "image/distance_map.h"
 #include "image/implant.h"
 #include "image/label_fields.h"
+#include "image/labels_of_body.h"
 #include "image/mesh_pieces.h"
+#include "image/size_grid.h"
 #include "image/surface_distance.h"
 #include "image/thin_parts.h"
 
@@ -22,21 +25,6 @@ namespace {
 
 constexpr std::size_t kMargin = 2;  ///< voxels that are read around the labels
 constexpr int kSub = 3;             ///< points a voxel's edge by which covered voxels are shared
-
-/// Distance from a point outside of a box, 0 inside.
-double beyond(const Bounds& box, const Vec3d& p) {
-  Vec3d d{};
-  for (std::size_t a = 0; a < 3; ++a) d[a] = std::max({box.min[a] - p[a], 0.0, p[a] - box.max[a]});
-  return norm(d);
-}
-
-BodyRegion label_region(const std::string& name, std::shared_ptr<const image::SplineField> field, const Bounds& box) {
-  const auto distance = [field = std::move(field), box](const Vec3d& p) {
-    const double outside = beyond(box, p);
-    return outside > 0.0 ? std::max(field->at(p), outside) : field->at(p);
-  };
-  return {name, distance, box, false};
-}
 
 /// All beyond the faces of the image that cut the body, as a hole: it closes the body flat.
 BodyRegion border_region(const GroupImage& labels, const std::vector<Bounds>& boxes) {
@@ -70,17 +58,30 @@ BodyRegion border_region(const GroupImage& labels, const std::vector<Bounds>& bo
   return {"border of the image", distance, all, true};
 }
 
-std::vector<image::Implant> implants_of(const ImageBody& body, const std::vector<LabelGroup>& groups) {
-  std::vector<image::Implant> implants;
-  std::vector<std::string> names;
-  for (const LabelGroup& g : groups) names.push_back(g.name);
-  for (const std::string& word : body.implants) {
-    implants.push_back(image::implant_of(word));
-    if (std::find(names.begin(), names.end(), implants.back().name) != names.end())
-      throw std::invalid_argument("implant \"" + implants.back().name +
-                                  "\" has the name of another region; give it its own");
-    names.push_back(implants.back().name);
+CleanLabels cleaning_of(const ImageBody& body) {
+  return {body.voxel, body.keep_pieces, body.smallest_piece_ml, body.largest_hole_ml};
+}
+
+/// Names of implants, each its own. @throws std::invalid_argument
+std::vector<std::string> implant_names(const ImageBody& body, const std::vector<LabelGroup>& groups) {
+  std::vector<std::string> taken, names;
+  for (const LabelGroup& g : groups) taken.push_back(g.name);
+  for (const std::string& text : body.implants) {
+    const image::ImplantWord word = image::implant_word(text);
+    if (word.kind == "labels" && !word.labels.empty())
+      label_groups(std::vector{word.labels}, read_label_names(word.file));
+    if (std::find(taken.begin(), taken.end(), word.name) != taken.end())
+      throw std::invalid_argument("implant \"" + word.name + "\" has the name of another region; give it its own");
+    taken.push_back(word.name);
+    names.push_back(word.name);
   }
+  return names;
+}
+
+std::vector<image::Implant> implants_of(const ImageBody& body) {
+  std::vector<image::Implant> implants;
+  for (const std::string& word : body.implants)
+    implants.push_back(image::implant_of(word, cleaning_of(body), body.smoothing));
   return implants;
 }
 
@@ -97,8 +98,7 @@ std::vector<double> covered(const GroupImage& labels, const std::vector<image::I
     const Vec3d index{static_cast<double>(at[0]), static_cast<double>(at[1]), static_cast<double>(at[2])};
     const Vec3d centre = grid.world(index);
     for (std::size_t m = 0; m < implants.size(); ++m) {
-      const Vec3d& s = implants[m].semi_axes;
-      if (norm(centre - implants[m].center) > reach + std::max({s.x, s.y, s.z})) continue;
+      if (norm(centre - implants[m].center) > reach + implants[m].radius()) continue;
       for (int p = 0; p < kSub * kSub * kSub; ++p) {
         const int i = p % kSub, j = p / kSub % kSub, k = p / (kSub * kSub);
         const Vec3d sub{(i + 0.5) / kSub - 0.5, (j + 0.5) / kSub - 0.5, (k + 0.5) / kSub - 0.5};
@@ -135,7 +135,7 @@ int first_free_number(const LabelImage& image, const std::vector<LabelGroup>& gr
 /// Labels beside the body, none of which is meshed.
 std::vector<LabelGroup> beside_groups(const ImageBody& body, const std::vector<LabelGroup>& groups) {
   if (body.beside.empty()) return {};
-  std::vector<LabelGroup> beside = label_groups(body.beside, read_label_names(body.path));
+  std::vector<LabelGroup> beside = label_groups(body.beside, image::label_names(body));
   for (const LabelGroup& b : beside) {
     for (const LabelGroup& g : groups) {
       for (const int label : b.labels) {
@@ -157,6 +157,12 @@ RegionMeshOptions mesh_options(const ImageBody& body, const GroupImage& labels, 
   options.growth = body.growth;
   if (body.edges_across > 0.0)
     options.size_at = image::thin_part_sizes(labels, body.edges_across, body.edge, body.growth);
+  if (!body.size_image.empty()) {
+    options.size_at = [thin = std::move(options.size_at),
+                       sizes = image::image_sizes(body.size_image, body.edge, body.growth)](const Vec3d& p) {
+      return thin ? std::min(thin(p), sizes(p)) : sizes(p);
+    };
+  }
   return options;
 }
 
@@ -173,36 +179,52 @@ void renumber(const ImageRegions& from, RegionMesh& made) {
 }  // namespace
 
 std::vector<std::string> image_set_names(const ImageBody& body) {
-  const std::vector<LabelGroup> groups = label_groups(body.labels, read_label_names(body.path));
+  const std::vector<LabelGroup> groups = label_groups(body.labels, image::label_names(body));
   std::vector<std::string> names;
   for (const LabelGroup& g : groups) names.push_back(g.name + "_surface");
-  for (const image::Implant& implant : implants_of(body, groups)) names.push_back(implant.name + "_surface");
+  for (const std::string& name : implant_names(body, groups)) names.push_back(name + "_surface");
   for (const LabelGroup& g : beside_groups(body, groups)) names.push_back(g.name);
   names.emplace_back("image_border");
   return names;
 }
 
+void resolve_paths(ImageBody& body, const std::filesystem::path& folder) {
+  const auto resolve = [&](std::filesystem::path& path) {
+    if (!path.empty() && path.is_relative()) path = folder / path;
+  };
+  resolve(body.path);
+  resolve(body.size_image);
+  for (std::string& text : body.implants) {
+    try {
+      image::ImplantWord word = image::implant_word(text);
+      if (word.kind != "labels") continue;
+      resolve(word.file);
+      text = word.text();
+    } catch (const std::invalid_argument&) {  // image_set_names says what is wrong
+    }
+  }
+}
+
 double voxel_edge(const ImageBody& body) {
-  return body.voxel > 0.0 ? body.voxel : std::cbrt(read_image_grid(body.path).voxel_volume());
+  return body.voxel > 0.0 ? body.voxel : std::cbrt(image::whole_grid(body).voxel_volume());
 }
 
 ImageRegions image_regions(const ImageBody& body) {
   detail::require_fields("image", body);
-  const std::vector<LabelGroup> groups = label_groups(body.labels, read_label_names(body.path));
+  const std::vector<LabelGroup> groups = label_groups(body.labels, image::label_names(body));
+  implant_names(body, groups);
   ReadImageOptions reading;
   reading.margin = kMargin;
   for (const LabelGroup& g : groups) reading.crop_to.insert(reading.crop_to.end(), g.labels.begin(), g.labels.end());
   const std::vector<LabelGroup> beside = beside_groups(body, groups);
   if (!beside.empty()) {
-    const Vec3d spacing = read_image_grid(body.path).spacing();
+    const Vec3d spacing = image::whole_grid(body).spacing();
     reading.margin +=
         static_cast<std::size_t>(std::ceil(body.beside_within / std::min({spacing.x, spacing.y, spacing.z}))) + 1;
   }
-  const LabelImage image = read_label_image(body.path, reading);
+  const LabelImage image = image::body_labels(body, reading);
   ImageRegions out;
-  out.labels =
-      clean_labels(image, groups, {body.voxel, body.keep_pieces, body.smallest_piece_ml, body.largest_hole_ml});
-  out.implants = body.implants;
+  out.labels = clean_labels(image, groups, cleaning_of(body));
   out.notes = image.notes;
   out.notes.insert(out.notes.end(), out.labels.report.begin(), out.labels.report.end());
 
@@ -210,13 +232,18 @@ ImageRegions image_regions(const ImageBody& body) {
                   within = body.beside_within](TetMesh& mesh) { image::add_body_sets(mesh, labels, near, within); };
 
   int number = first_free_number(image, groups);
-  const std::vector<image::Implant> implants = implants_of(body, groups);
+  const std::vector<image::Implant> implants = implants_of(body);
   const std::vector<double> taken = covered(out.labels, implants, out.notes);
   for (const image::Implant& implant : implants) {
-    out.regions.push_back(implant.region());
+    out.regions.push_back(implant.region);
     out.numbers.push_back(number++);
     out.image_volumes.push_back(implant.volume());
+    out.notes.insert(out.notes.end(), implant.notes.begin(), implant.notes.end());
   }
+  for (const image::Implant& implant : implants) out.implant_pieces.push_back(implant.pieces());
+  out.measure = [labels = out.labels, implants](const TetMesh& mesh, std::vector<ImageRegion>& regions) {
+    image::measure_distances(labels, implants, mesh, regions);
+  };
   const image::LabelFields fields = image::smooth_fields(out.labels, {body.smoothing});
   if (std::find(out.labels.cut.begin(), out.labels.cut.end(), true) != out.labels.cut.end()) {
     out.regions.push_back(border_region(out.labels, fields.bounds));
@@ -225,7 +252,7 @@ ImageRegions image_regions(const ImageBody& body) {
   }
   const std::vector<double> volumes = out.labels.volumes();
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    out.regions.push_back(label_region(groups[g].name, fields.fields[g], fields.bounds[g]));
+    out.regions.push_back(image::field_region(groups[g].name, fields.fields[g], fields.bounds[g]));
     out.numbers.push_back(groups[g].number());
     out.image_volumes.push_back(volumes[g] - taken[g + 1]);
   }
@@ -234,12 +261,15 @@ ImageRegions image_regions(const ImageBody& body) {
 
 namespace {
 
-constexpr int kMostTries = 12;  ///< meshes of a body, each finer where the last one tore or lost a region
+constexpr int kMostTries =
+    40;  ///< meshes of a body, each finer where the last one tore or lost a region: all halvings of 12 regions
 constexpr int kMostRefined =
     3;  ///< of them, where no region was lost: pieces that touch at edges may never come out as in the image
 constexpr int kMostHalvings = 3;                       ///< of the edges in a region
 constexpr double kVolumeOff = 0.03, kSmallOff = 0.05;  ///< of a region's volume
 constexpr double kSmall = 5e-6;                        ///< region for which the second holds [m³]
+constexpr double kMostOfBall =
+    1.3;  ///< edge over the radius of the largest ball in a region above which it has been lost
 
 /// Regions that a mesh has torn, joined, or of another volume than their voxels.
 std::vector<std::string> poorly_meshed(const std::vector<ImageRegion>& regions) {
@@ -262,7 +292,7 @@ std::vector<ImageRegion> measured(const ImageRegions& from, const TetMesh& mesh)
     region.name = from.regions[r].name;
     region.label = from.numbers[r];
     region.image_volume = from.image_volumes[r];
-    region.image_pieces = 1;
+    region.image_pieces = r < from.implant_pieces.size() ? from.implant_pieces[r] : 1;
     for (std::size_t g = 0; g < from.labels.groups.size(); ++g) {
       if (from.labels.groups[g].name == region.name) region.image_pieces = image_pieces[g];
     }
@@ -330,6 +360,50 @@ void refine(const std::string& name, double edge, std::vector<MeshSize>& sizes) 
   sizes.push_back(size);
 }
 
+/// A place as a person finds it: the voxel of the image, resampled or not, and RAS.
+std::string place_text(const ImageBody& body, const GroupImage& labels, std::size_t voxel) {
+  const auto at = labels.grid.place(voxel);
+  const Vec3d p =
+      labels.grid.world({static_cast<double>(at[0]), static_cast<double>(at[1]), static_cast<double>(at[2])});
+  const Vec3d index = image::whole_grid(body).index(p);
+  const auto whole = [](double x) { return std::to_string(std::lround(x)); };
+  const auto mm = [](double x) { return detail::number_text(std::round(1e4 * x) / 10.0, 6); };
+  return "voxel (" + whole(index.x) + ", " + whole(index.y) + ", " + whole(index.z) + "), at (" + mm(p.x) + ", " +
+         mm(p.y) + ", " + mm(p.z) + ") mm in RAS";
+}
+
+/// A region of an image that came out without a tet, with its first voxel.
+RegionLost lost_region(const RegionLost& lost, const ImageBody& body, const ImageRegions& from, double edge) {
+  std::string place;
+  for (std::size_t g = 0; g < from.labels.groups.size(); ++g) {
+    if (from.labels.groups[g].name != lost.name) continue;
+    const auto first = std::find(from.labels.voxels.begin(), from.labels.voxels.end(), g + 1);
+    place = " (" + place_text(body, from.labels, static_cast<std::size_t>(first - from.labels.voxels.begin())) + ")";
+  }
+  return {lost.name,
+          "region \"" + lost.name + "\"" + place + " is left without a tet by edges of " +
+              detail::number_text(1e3 * edge, 3) +
+              " mm: it is too thin for them, or regions before it cover it; give shorter edges there, join it "
+              "with another label, or leave it out"};
+}
+
+/// Halvings of the edges of regions in which no ball fits that such edges mesh: these would be lost or torn.
+std::map<std::string, int> first_halvings(const ImageBody& body, const GroupImage& labels) {
+  std::map<std::string, int> halved;
+  std::vector<char> set(labels.voxels.size());
+  for (std::size_t g = 0; body.refine && g < labels.groups.size(); ++g) {
+    for (std::size_t v = 0; v < set.size(); ++v) set[v] = labels.voxels[v] != g + 1;
+    const std::vector<float> inner = image::distance_to(labels.grid.size, labels.grid.spacing(), set);
+    double radius = 0.0;
+    for (std::size_t v = 0; v < set.size(); ++v) {
+      if (set[v] == 0) radius = std::max<double>(radius, inner[v]);
+    }
+    int& times = halved[labels.groups[g].name];
+    while (times < kMostHalvings && body.edge * std::exp2(-times) > kMostOfBall * radius) ++times;
+  }
+  return halved;
+}
+
 void warn_of(const std::vector<std::string>& poor, double edge, RegionMeshReport& report) {
   for (const std::string& name : poor)
     report.warnings.push_back(
@@ -346,7 +420,14 @@ ImageMesh image_mesh(const ImageBody& body, std::function<bool(double)> progress
   const ImageRegions& from = out.from;
   RegionMeshOptions options = mesh_options(body, from.labels, std::move(progress));
   out.notes = from.notes;
-  std::map<std::string, int> halved;  // regions whose edges were halved, and how often
+  std::map<std::string, int> halved =
+      first_halvings(body, from.labels);  // regions whose edges were halved, and how often
+  for (const auto& [name, times] : halved) {
+    if (times == 0) continue;
+    refine(name, body.edge * std::exp2(-times), options.sizes);
+    out.notes.push_back("mesh: edges of " + detail::number_text(1e3 * body.edge * std::exp2(-times), 3) + " mm in " +
+                        name + ", which is thin");
+  }
   int refined = 0;
   for (int tries = 1;; ++tries) {
     std::vector<std::string> notes, poor;
@@ -359,7 +440,8 @@ ImageMesh image_mesh(const ImageBody& body, std::function<bool(double)> progress
       update_report(out.regions, out.report);
       poor = poorly_meshed(out.regions);
     } catch (const RegionLost& lost) {
-      if (!body.refine || tries == kMostTries || halved[lost.name] == kMostHalvings) throw;
+      if (!body.refine || tries == kMostTries || halved[lost.name] == kMostHalvings)
+        throw lost_region(lost, body, from, body.edge * std::exp2(-halved[lost.name]));
       poor = {lost.name};
       whole = false;
     }
@@ -382,11 +464,7 @@ ImageMesh image_mesh(const ImageBody& body, std::function<bool(double)> progress
   return out;
 }
 
-void measure_distances(ImageMesh& made) {
-  std::vector<image::Implant> implants;
-  for (const std::string& word : made.from.implants) implants.push_back(image::implant_of(word));
-  image::measure_distances(made.from, implants, made.mesh, made.regions);
-}
+void measure_distances(ImageMesh& made) { made.from.measure(made.mesh, made.regions); }
 
 std::vector<double> edges_asked(const ImageBody& body, const ImageMesh& made) {
   RegionMeshOptions options = mesh_options(body, made.from.labels, {});

@@ -11,9 +11,9 @@ namespace glisson::image {
 namespace {
 
 constexpr std::size_t kPad = 4;       ///< voxels around the image
-constexpr int kSub = 2;               ///< points a voxel's edge where volumes are counted
+constexpr int kSub = 4;               ///< points a voxel's edge where volumes are counted
 constexpr int kLastRounds = 4;        ///< without smoothing: volumes and voxels alone
-constexpr int kCorrections = 2;       ///< of volumes by those of the splines
+constexpr int kCorrections = 5;       ///< of volumes by those of the splines
 constexpr double kVolumeShare = 0.8;  ///< of the shift that would bring the volume at once
 constexpr double kMostShift = 0.25;   ///< of it in a round, in voxels
 
@@ -361,6 +361,16 @@ LabelFields smooth_fields(const GroupImage& from, const SmoothingOptions& option
   out.changed_voxels = fields.changed();
   out.bounds = boxes_of(image);
   return out;
+}
+
+BodyRegion field_region(const std::string& name, std::shared_ptr<const SplineField> field, const Bounds& box) {
+  const auto distance = [field = std::move(field), box](const Vec3d& p) {
+    Vec3d beyond{};
+    for (std::size_t a = 0; a < 3; ++a) beyond[a] = std::max({box.min[a] - p[a], 0.0, p[a] - box.max[a]});
+    const double outside = norm(beyond);
+    return outside > 0.0 ? std::max(field->at(p), outside) : field->at(p);
+  };
+  return {name, distance, box, false};
 }
 
 }  // namespace glisson::image

@@ -228,17 +228,28 @@ double implant_to_mesh(const Implant& implant, const Triangles& mesh) {
   return quantile(std::move(distances));
 }
 
+/// Of a group of labels: `outer` is what of its surface in the mesh is compared with the level of its voxels, `all` is all of it.
+void measure_group(const GroupImage& labels, std::size_t group, const Triangles& outer, const Triangles& all,
+                   const std::function<bool(const Vec3d&)>& counts, ImageRegion& region) {
+  const Part part(labels, group);
+  const Triangles level = with_area(part.level()), faces = part.faces();
+  region.distance_p95 = std::max(one_way(outer, level, counts), one_way(level, all, counts));
+  region.faces_p95 = one_way(faces, all, counts);
+}
+
 void measure_implant(const Implant& implant, const Triangles& mesh, ImageRegion& region) {
-  const BodyRegion shape = implant.region();
+  if (implant.labels)
+    return measure_group(
+        *implant.labels, 0, mesh, mesh, [](const Vec3d&) { return true; }, region);
   std::vector<double> distances;
-  for (const detail::Corners& t : mesh) distances.push_back(std::abs(shape.distance(detail::middle_of(t))));
+  for (const detail::Corners& t : mesh) distances.push_back(std::abs(implant.region.distance(detail::middle_of(t))));
   region.distance_p95 = std::max(quantile(std::move(distances)), implant_to_mesh(implant, mesh));
   region.faces_p95 = region.distance_p95;
 }
 
 }  // namespace
 
-void measure_distances(const ImageRegions& from, const std::vector<Implant>& implants, const TetMesh& mesh,
+void measure_distances(const GroupImage& labels, const std::vector<Implant>& implants, const TetMesh& mesh,
                        std::vector<ImageRegion>& regions) {
   std::vector<int> numbers;
   for (const Implant& implant : implants) {
@@ -248,7 +259,7 @@ void measure_distances(const ImageRegions& from, const std::vector<Implant>& imp
   }
   MeshSurfaces surfaces = surfaces_of_mesh(mesh, numbers);
   const auto counts = [&](const Vec3d& p) {
-    if (at_border(from.labels, from.labels.grid.index(p))) return false;
+    if (at_border(labels, labels.grid.index(p))) return false;
     return std::none_of(implants.begin(), implants.end(), [&](const Implant& i) { return i.contains(p); });
   };
   for (ImageRegion& region : regions) {
@@ -260,14 +271,11 @@ void measure_distances(const ImageRegions& from, const std::vector<Implant>& imp
       measure_implant(*implant, all, region);
       continue;
     }
-    const auto& groups = from.labels.groups;
+    const auto& groups = labels.groups;
     const auto group =
         std::find_if(groups.begin(), groups.end(), [&](const LabelGroup& g) { return g.name == region.name; });
-    const Part part(from.labels, static_cast<std::size_t>(group - groups.begin()));
-    const Triangles level = with_area(part.level()), faces = part.faces();
-    const Triangles& outer = surfaces.without_implants[region.label];
-    region.distance_p95 = std::max(one_way(outer, level, counts), one_way(level, all, counts));
-    region.faces_p95 = one_way(faces, all, counts);
+    measure_group(labels, static_cast<std::size_t>(group - groups.begin()), surfaces.without_implants[region.label],
+                  all, counts, region);
   }
 }
 

@@ -10,7 +10,7 @@
 namespace glisson::image {
 
 /// Fills distance_p95 and faces_p95 of each region of a mesh.
-void measure_distances(const ImageRegions& from, const std::vector<Implant>& implants, const TetMesh& mesh,
+void measure_distances(const GroupImage& labels, const std::vector<Implant>& implants, const TetMesh& mesh,
                        std::vector<ImageRegion>& regions);
 
 }  // namespace glisson::image

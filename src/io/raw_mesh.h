@@ -23,6 +23,7 @@ struct RawMesh {
   std::vector<CurvedTet> curved;                 ///< those whose corners are among the tets of the mesh
   std::vector<std::string> notes;                ///< sentences for the report
   std::vector<Field> vertex_fields, tet_fields;  ///< those that were asked for
+  std::vector<std::string> arrays;               ///< names of all that could be asked for
 };
 
 /// @throws FileError "NAME: WHAT"

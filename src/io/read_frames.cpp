@@ -58,7 +58,7 @@ ReadFrame read_frame(const std::filesystem::path& file, std::span<const std::str
   if (!raw.skipped.empty() || raw.mesh.tets.empty()) detail::fail(name, "a frame holds tetrahedra, and nothing else");
   for (const Field& field : raw.vertex_fields) require_size(field, raw.mesh.vertices.size(), name);
   for (const Field& field : raw.tet_fields) require_size(field, raw.mesh.tets.size(), name);
-  return {std::move(raw.mesh), std::move(raw.vertex_fields), std::move(raw.tet_fields)};
+  return {std::move(raw.mesh), std::move(raw.vertex_fields), std::move(raw.tet_fields), std::move(raw.arrays)};
 }
 
 }  // namespace glisson

@@ -55,6 +55,7 @@ class VtuReader {
     RawMesh raw = grid_.finish();
     raw.vertex_fields = std::move(vertex_fields_);
     raw.tet_fields = std::move(tet_fields_);
+    raw.arrays = std::move(names_);
     if (is_frame_) raw.notes.emplace_back(kFrameNote);
     return raw;
   }
@@ -75,6 +76,7 @@ class VtuReader {
   std::int64_t first_vertex_ = 0;  ///< of the piece
   std::map<std::string, std::vector<double>> regions_, sets_, fibres_;
   std::vector<Field> vertex_fields_, tet_fields_;
+  std::vector<std::string> names_;
   bool is_frame_ = false;
 };
 
@@ -146,6 +148,8 @@ void VtuReader::add_piece(vtkXMLDataElement& piece) {
 /// Pieces follow each other.
 void VtuReader::take_field(vtkXMLDataElement& array, std::uint64_t count, std::vector<Field>& fields) {
   const std::string name = attribute(array, "Name");
+  if (!VtkGrid::is_set_array(name) && std::find(names_.begin(), names_.end(), name) == names_.end())
+    names_.push_back(name);
   if (std::find(fields_.begin(), fields_.end(), name) == fields_.end()) return;
   const std::uint64_t components = arrays_.count(array, "NumberOfComponents", 1);
   if (components != 1 && components != 3 && components != 9) return;

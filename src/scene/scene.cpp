@@ -262,13 +262,31 @@ void complete_surfaces(ImplicitBody& body, const Node& experiment, const std::fi
 /// Looks whether an image is there and has the labels' names.
 void complete_image(ImageBody& body, const Node& experiment, const std::filesystem::path& base, Problems& problems) {
   const Node& mesh = *experiment.find("mesh");
-  if (body.path.is_relative()) body.path = base / body.path;
+  resolve_paths(body, base);
   try {
     image_set_names(body);
   } catch (const ImageError& error) {
     problems.add(mesh.find("path")->where, "mesh.path", error.what());
   } catch (const std::invalid_argument& error) {
     problems.add(mesh.find("labels")->where, "mesh", error.what());
+  }
+}
+
+/// Looks whether images of stiffness are there.
+void complete_stiffness(Variant& variant, const Node& experiment, const std::filesystem::path& base,
+                        Problems& problems) {
+  for (std::size_t i = 0; i < variant.stiffness.size(); ++i) {
+    const Node& table = (*experiment.find("stiffness")->array())[i];
+    StiffnessImage& image = variant.stiffness[i];
+    for (const auto& [key, path] : {std::pair("path", &image.path), std::pair("loss", &image.loss)}) {
+      if (path->empty()) continue;
+      if (path->is_relative()) *path = base / *path;
+      try {
+        read_image_grid(*path);
+      } catch (const ImageError& error) {
+        problems.add(table.find(key)->where, "stiffness." + std::to_string(i) + "." + key, error.what());
+      }
+    }
   }
 }
 
@@ -352,6 +370,7 @@ Variant scene::read_variant(const Node& experiment, const std::filesystem::path&
   if (file && file->path.is_relative()) file->path = base / file->path;
   if (auto* body = std::get_if<ImplicitBody>(&variant.mesh)) complete_surfaces(*body, experiment, base, problems);
   if (auto* body = std::get_if<ImageBody>(&variant.mesh)) complete_image(*body, experiment, base, problems);
+  complete_stiffness(variant, experiment, base, problems);
   if (problems.count() > before) return variant;
   Interactions instruments = complete_motions(variant, experiment, base, problems);
   if (problems.count() > before) return variant;

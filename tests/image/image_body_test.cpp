@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <random>
 #include <set>
 
@@ -83,6 +85,18 @@ TEST_F(ImageBodies, SameImageSameMesh) {
   EXPECT_EQ(image_mesh(body).mesh, image_mesh(body).mesh);
 }
 
+// Labels in memory mesh as those of a file, to the byte, cropped as these are.
+TEST_F(ImageBodies, LabelsInMemory) {
+  ImageBody body = two_halves();
+  const TetMesh from_file = image_mesh(body).mesh;
+  body.image = std::make_shared<LabelImage>(read_label_image(body.path));
+  body.path.clear();
+  EXPECT_EQ(image_mesh(body).mesh, from_file);
+  body.labels = {"99"};
+  EXPECT_THAT([&] { image_mesh(body); },
+              ThrowsMessage<ImageError>(HasSubstr("no voxel has the label 99; there are: 10, 20, 30")));
+}
+
 // An organ that the image cuts is closed flat at the outer faces of its last voxels: it ends at
 // that plane, its volume is that of its voxels, and this is said.
 TEST_F(ImageBodies, CutOrganIsClosedFlat) {
@@ -105,7 +119,7 @@ TEST_F(ImageBodies, CutOrganIsClosedFlat) {
               testing::Contains(HasSubstr("the image ends in the body at its last k; it is closed flat there")));
 }
 
-// An implanted ball of 18 mm has its volume of 3.05 mL within 3 %, the first free number, and is taken from the organ around it.
+// An implanted ball of 18 mm has its volume of 3.05 mL within 5 %, the bar below 5 mL, the first free number, and is taken from the organ around it.
 TEST_F(ImageBodies, ImplantedBall) {
   ImageBody body = two_halves();
   body.implants = {"tumour=ball:35,43.5,56,18mm"};
@@ -116,7 +130,7 @@ TEST_F(ImageBodies, ImplantedBall) {
   EXPECT_EQ(tumour.name, "tumour");
   EXPECT_EQ(tumour.label, 31);
   EXPECT_NEAR(1e6 * tumour.image_volume, 3.0536, 1e-4);
-  EXPECT_NEAR(tumour.volume / tumour.image_volume, 1.0, 0.03);
+  EXPECT_NEAR(tumour.volume / tumour.image_volume, 1.0, 0.05);
   const ImageMesh without = image_mesh(two_halves());
   double sum = 0.0, sum_without = 0.0;
   for (const ImageRegion& r : made.regions) sum += r.image_volume;
@@ -124,6 +138,64 @@ TEST_F(ImageBodies, ImplantedBall) {
   EXPECT_NEAR(sum, sum_without, 0.01 * tumour.image_volume);  // 27 points a voxel
   measure_distances(made);
   EXPECT_LE(made.regions[0].distance_p95, 0.5e-3);
+}
+
+// An implant of a label file has the volume of its voxels on their own, finer grid, within 3 %, its surface follows theirs to half a voxel, and
+// what it covers is taken from the organ; all labels of the file are meant where none are named.
+TEST_F(ImageBodies, ImplantedLabels) {
+  const auto lesion = [](int i, int j, int k) {
+    const double x = (i - 11.5) / 9.0, y = (j - 9.5) / 7.0, z = (k - 9.5) / 6.0;
+    return x * x + y * y + z * z > 1.0 ? 0 : i < 12 ? 2 : 3;
+  };
+  std::string bytes = meta_image({24, 20, 20}, 1.0, lesion);
+  bytes.replace(bytes.find("Offset = 0 0 0"), 14, "Offset = -25 -35 45");  // LPS: the ball's middle
+  ImageBody body = two_halves();
+  body.implants = {"lesion=labels:" + write("lesion.mha", bytes) + ":2+3"};
+  ImageMesh made = image_mesh(body);
+  expect_sound(made.mesh);
+  measure_distances(made);
+  const ImageRegion& implant = made.regions[0];
+  EXPECT_EQ(implant.name, "lesion");
+  EXPECT_NEAR(1e6 * implant.image_volume, 4.0 / 3.0 * M_PI * 9.0 * 7.0 * 6.0 * 1e-3, 0.03);
+  EXPECT_NEAR(implant.volume / implant.image_volume, 1.0, 0.05);  // below 5 mL
+  EXPECT_EQ(implant.pieces, 1u);
+  EXPECT_LE(implant.distance_p95, 0.5e-3);
+  const ImageMesh without = image_mesh(two_halves());
+  double sum = 0.0, sum_without = 0.0;
+  for (const ImageRegion& r : made.regions) sum += r.image_volume;
+  for (const ImageRegion& r : without.regions) sum_without += r.image_volume;
+  EXPECT_NEAR(sum, sum_without, 0.01 * implant.image_volume);
+  const TetMesh named = made.mesh;
+  body.implants = {"lesion=labels:" + (folder_ / "lesion.mha").string()};
+  EXPECT_EQ(image_mesh(body).mesh, named);
+  body.implants = {"lesion=labels:lesion.mha"};
+  resolve_paths(body, folder_);
+  EXPECT_EQ(body.implants.front(), "lesion=labels:" + (folder_ / "lesion.mha").string());
+}
+
+// An image of sizes on a grid of its own makes edges shorter where it asks for it, and nowhere else; one that asks for too much is refused with
+// the voxel.
+TEST_F(ImageBodies, SizesOfAnImage) {
+  ImageBody body = two_halves();
+  const ImageMesh plain = image_mesh(body);
+  const auto finer_left = [](int i, int, int) { return i < 4 ? 3 : 0; };  // i < 4 is x < 45 mm
+  body.size_image = write("sizes.mha", meta_image({9, 9, 9}, 12.0, finer_left));
+  const ImageMesh made = image_mesh(body);
+  expect_sound(made.mesh);
+  const auto count = [](const TetMesh& mesh, double from, double to) {
+    std::size_t n = 0;
+    for (const Tet& t : mesh.tets) {
+      const double x =
+          0.25 * (mesh.vertices[t[0]].x + mesh.vertices[t[1]].x + mesh.vertices[t[2]].x + mesh.vertices[t[3]].x);
+      n += x > from && x < to;
+    }
+    return static_cast<double>(n);
+  };
+  EXPECT_GT(count(made.mesh, 0.0, 0.036), 5.0 * count(plain.mesh, 0.0, 0.036));  // half the edges: 8 times
+  EXPECT_LT(count(made.mesh, 0.066, 0.1), 1.3 * count(plain.mesh, 0.066, 0.1));
+  body.edge = 1.0;
+  EXPECT_THAT([&] { image_mesh(body); },
+              ThrowsMessage<ImageError>(HasSubstr("voxel (0, 0, 0) asks for edges of 3 mm; allowed: at least 1/256")));
 }
 
 // Words of implants that are wrong say how to write them; one outside of all regions, and one with a taken name, are refused.
@@ -143,6 +215,9 @@ TEST_F(ImageBodies, ImplantsThatAreWrong) {
   EXPECT_THAT(said("t=ball:1,2,3"), HasSubstr("has 3 numbers in place of 4"));
   EXPECT_THAT(said("t=ball:1,2,x,3mm"), HasSubstr("\"x\" is no length in mm"));
   EXPECT_THAT(said("t=ball:1,2,3,-4mm"), HasSubstr("not above 0"));
+  EXPECT_THAT(said("t=labels:none.txt"), HasSubstr("names no image file"));
+  EXPECT_THAT(said("t=labels:none.nii.gz"), HasSubstr("there is no such file"));
+  EXPECT_THAT(said("t=labels:" + (folder_ / "halves.mha").string() + ":77"), HasSubstr("no voxel has the label 77"));
   EXPECT_THAT(said("t=ball:-500,0,0,4mm"), HasSubstr("lies in none of the regions"));
   EXPECT_THAT(said("left=ball:35,43.5,56,18mm"), HasSubstr("has the name of another region"));
   EXPECT_EQ(said("t=ellipsoid:35,43.5,56,9,6,5mm"), "was made");
@@ -161,7 +236,8 @@ TEST_F(ImageBodies, TornVesselIsRefined) {
                  .edge = 0.005};
   body.refine = false;
   EXPECT_THAT([&] { image_mesh(body); },
-              ThrowsMessage<RegionLost>(HasSubstr("region \"vessel\" is left without a tet")));
+              ThrowsMessage<RegionLost>(
+                  HasSubstr("region \"vessel\" (voxel (17, 6, 11), at (17, 6, 11) mm in RAS) is left without a tet")));
   body.refine = true;
   const ImageMesh whole = image_mesh(body);
   EXPECT_EQ(whole.regions[1].pieces, 1u);
@@ -170,6 +246,26 @@ TEST_F(ImageBodies, TornVesselIsRefined) {
   body.refine = false;
   body.edges_across = 1.5;
   EXPECT_EQ(image_mesh(body).regions[1].pieces, 1u);
+}
+
+// Sheets, threads and specks of one voxel keep the volume of their voxels within 5 %: with 8 points a voxel by which volumes are counted, a thread
+// got a third more, and edges were halved until nothing was won.
+TEST_F(ImageBodies, ThinPartsKeepTheirVolume) {
+  const auto label = [](int i, int j, int k) {
+    if (k == 10 && i > 4 && i < 26 && j > 4 && j < 20) return 1;              // a sheet
+    if (j == 12 && k == 16 && i > 3 && i < 27) return 2;                      // a thread
+    if (i == 14 && j == 8 && k == 20) return 3;                               // a speck
+    if (i + j == 30 && k == 4 && i > 8 && i < 22) return 4;                   // voxels that touch at edges: one is kept
+    return std::abs(i - 15) < 11 && std::abs(j - 12) < 9 && k == 13 ? 5 : 0;  // a sheet beside it
+  };
+  const ImageMesh made = image_mesh({.path = write("thin.mha", meta_image({30, 26, 24}, 1.0, label)),
+                                     .labels = {"sheet=1", "thread=2", "speck=3", "steps=4", "cover=5"},
+                                     .edge = 0.0025});
+  expect_sound(made.mesh);
+  for (const ImageRegion& r : made.regions) {
+    EXPECT_NEAR(r.volume / r.image_volume, 1.0, 0.05) << r.name;
+    EXPECT_EQ(r.pieces, r.image_pieces) << r.name;
+  }
 }
 
 // A sheared grid meshes as one at right angles does: the volume is that of the voxels.
@@ -234,7 +330,40 @@ std::string random_image(unsigned seed, int n) {
                     [&](int i, int j, int k) { return voxels[static_cast<std::size_t>(i + n * (j + n * k))]; });
 }
 
-/// Meshes random images; all that are made are sound. @return how many were
+/// Each interface face lies between the two labels that it parts: its tets are one of each, and both are on their side of it; a face of the
+/// surface has one tet. Faces of one region have two.
+void expect_interfaces(const TetMesh& mesh) {
+  std::map<Triangle, std::vector<std::uint32_t>> faces;
+  for (std::uint32_t t = 0; t < mesh.tets.size(); ++t) {
+    ASSERT_GT(six_rest_volume(mesh, t), 0.0) << t;
+    for (std::size_t out = 0; out < 4; ++out) {
+      Triangle face{};
+      for (std::size_t c = 0, n = 0; c < 4; ++c) {
+        if (c != out) face[n++] = mesh.tets[t][c];
+      }
+      std::sort(face.begin(), face.end());
+      faces[face].push_back(t);
+    }
+  }
+  std::size_t outer = 0;
+  for (const auto& [face, tets] : faces) {
+    ASSERT_LE(tets.size(), 2u);
+    outer += tets.size() == 1;
+    if (tets.size() == 1) continue;
+    const Vec3d &a = mesh.vertices[face[0]], &b = mesh.vertices[face[1]], &c = mesh.vertices[face[2]];
+    double product = 1.0;
+    for (const std::uint32_t t : tets) {
+      for (const std::uint32_t v : mesh.tets[t]) {
+        if (v != face[0] && v != face[1] && v != face[2]) product *= dot(cross(b - a, c - a), mesh.vertices[v] - a);
+      }
+    }
+    ASSERT_LT(product, 0.0);  // one tet on each side, of its own region
+  }
+  EXPECT_EQ(outer, boundary_triangles(mesh).size());
+}
+
+/// Meshes random images; all that are made are sound and have all of their labels; the others are refused with the place of a voxel.
+/// @return how many were made
 int mesh_random_images(const std::filesystem::path& folder, unsigned first, unsigned count, int n) {
   int made_count = 0;
   for (unsigned seed = first; seed < first + count; ++seed) {
@@ -246,22 +375,44 @@ int mesh_random_images(const std::filesystem::path& folder, unsigned first, unsi
     for (const LabelFigures& f : label_figures(read_label_image(file))) there.insert(f.label);
     for (const int label : there) body.labels.push_back(std::to_string(label));
     try {
+      const std::clock_t start = std::clock();
       const ImageMesh made = image_mesh(body);
+      EXPECT_LE(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 30.0);
       expect_sound(made.mesh);
+      expect_interfaces(made.mesh);
+      EXPECT_EQ(std::set<int>(made.mesh.regions.begin(), made.mesh.regions.end()), there);
       ++made_count;
     } catch (const std::invalid_argument& error) {
-      EXPECT_THAT(error.what(), HasSubstr("region \""));
+      EXPECT_THAT(error.what(), HasSubstr("\" (voxel ("));
     }
   }
   return made_count;
 }
 
-// Random labels with sheets, threads, single voxels and touching corners give sound meshes, or are refused with the region's name.
+// Random labels with sheets, threads, single voxels and touching corners give sound meshes, or are refused with a voxel of the region.
 TEST_F(ImageBodies, RandomLabels) { EXPECT_EQ(mesh_random_images(folder_, 5, 2, 24), 2); }
 
-// The same 200 times at 64³; 190 of them are meshed.
-TEST_F(ImageBodies, ManyRandomLabels) {  // verify
-  EXPECT_GE(mesh_random_images(folder_, 100, 200, 64), 190);
+// The same 200 times at 64³, of which 190 and more are meshed: 19 of each 20.
+class ManyImages : public ImageBodies, public testing::WithParamInterface<unsigned> {};
+TEST_P(ManyImages, RandomLabels) {  // verify
+  EXPECT_GE(mesh_random_images(folder_, GetParam(), 20, 64), 19);
+}
+INSTANTIATE_TEST_SUITE_P(Seeds, ManyImages, testing::Range(100U, 300U, 20U));
+
+// A label that no mesh may have, for an earlier one covers it, is refused by name with its voxel and where that is.
+TEST_F(ImageBodies, LostRegionIsRefusedWithItsVoxel) {
+  const auto label = [](int i, int j, int k) {
+    return i < 3 || i > 16 || j < 3 || j > 16 || k < 3 || k > 16 ? 0 : i == 9 && j == 10 && k == 11 ? 2 : 1;
+  };
+  ImageBody body{.path = write("speck.mha", meta_image({20, 20, 20}, 1.0, label)),
+                 .labels = {"organ=1", "speck=2"},
+                 .implants = {"clip=ball:9,10,11,6mm"},
+                 .edge = 0.003};
+  EXPECT_THAT([&] { image_mesh(body); },
+              ThrowsMessage<RegionLost>(
+                  HasSubstr("region \"speck\" (voxel (9, 10, 11), at (9, 10, 11) mm in RAS) is left without a tet")));
+  body.implants.clear();
+  EXPECT_EQ(image_mesh(body).regions[1].pieces, 1u);
 }
 
 }  // namespace

@@ -74,6 +74,7 @@ edges_across = 1.5
 refine = false
 max_tets = 70000
 growth = 0.2
+size_image = "sizes.mha"
 [[mesh.size]]
 near = "lump"
 edge_mm = 3
@@ -94,6 +95,7 @@ edge_mm = 3
   EXPECT_DOUBLE_EQ(b.edge, 0.005);
   EXPECT_EQ(b.max_tets, 70000u);
   EXPECT_EQ(b.growth, 0.2);
+  EXPECT_EQ(b.size_image, folder_ / "sizes.mha");
   ASSERT_EQ(b.sizes.size(), 1u);
   EXPECT_EQ(b.sizes[0].near, "lump");
 }

@@ -12,6 +12,7 @@
 #include "glisson/scene/scene.h"
 #include "report/json_field.h"
 #include "view/replay/outside_file.h"
+#include "view/replay/variant_folder.h"
 #include "view/replay/view_lines.h"
 
 namespace glisson::view {
@@ -26,41 +27,6 @@ namespace fs = std::filesystem;
 bool is_file(const fs::path& path) {
   std::error_code error;
   return fs::is_regular_file(path, error);
-}
-
-std::vector<std::string> variants_in(const fs::path& folder) {
-  std::vector<std::string> names;
-  std::error_code error;
-  for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
-    if (is_file(at->path() / "frames.pvd")) names.push_back(at->path().filename().string());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-/// The folder of the variant that is meant: the run's, or one of a variant itself.
-fs::path variant_folder(const fs::path& folder, const std::string& wanted, RunFolder& run) {
-  if (is_file(folder / "frames.pvd")) {
-    run.variants = {folder.filename().string()};
-    run.variant = run.variants.front();
-    if (!wanted.empty() && wanted != run.variant)
-      refuse(folder, "--variant " + wanted + ": this is the folder of one variant; give the folder of the run");
-    return folder;
-  }
-  run.variants = variants_in(folder);
-  if (run.variants.empty()) {
-    const bool ran = is_file(folder / ".glisson");
-    refuse(folder, ran ? "a run without frames; run its scene again with `--set output.frames=30`, or open report.html"
-                       : "holds no run of glisson (no <variant>/frames.pvd); give the folder that `glisson run SCENE "
-                         "--out DIR` wrote, or a scene file");
-  }
-  run.variant = wanted.empty() ? run.variants.front() : wanted;
-  if (std::find(run.variants.begin(), run.variants.end(), run.variant) == run.variants.end()) {
-    std::string names;
-    for (const std::string& name : run.variants) names += (names.empty() ? "" : ", ") + name;
-    refuse(folder, "--variant " + wanted + ": no such variant with frames; it has " + names);
-  }
-  return folder / run.variant;
 }
 
 void take_frames(const fs::path& folder, RunFolder& run) {
@@ -155,7 +121,10 @@ bool is_folder(const fs::path& path) {
 RunFolder open_run(const fs::path& given, const std::string& variant) {
   const fs::path folder = fs::weakly_canonical(given);
   RunFolder run;
-  const fs::path own = variant_folder(folder, variant, run);
+  VariantFolder found = variant_folder(folder, variant);
+  const fs::path own = found.path;
+  run.variant = std::move(found.variant);
+  run.variants = std::move(found.variants);
   take_frames(own, run);
   run.title = run.label = run.variant;
   take_view_file(own / "view.jsonl", run);

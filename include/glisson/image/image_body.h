@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -18,10 +19,11 @@ namespace glisson {
 
 struct ImageBody {
   static constexpr std::string_view kName = "image";
-  std::filesystem::path path{};       ///< the image of labels
-  std::vector<std::string> labels{};  ///< regions by precedence of their surfaces: label_groups
+  std::filesystem::path path{};               ///< the image of labels
+  std::shared_ptr<const LabelImage> image{};  ///< labels in memory, in place of `path`
+  std::vector<std::string> labels{};          ///< regions by precedence of their surfaces: label_groups
   std::vector<std::string>
-      implants{};  ///< NAME=ball:X,Y,Z,DIAMETERmm and NAME=ellipsoid:X,Y,Z,A,B,Cmm, in mm; over all labels
+      implants{};  ///< NAME=ball:X,Y,Z,DIAMETERmm, NAME=ellipsoid:X,Y,Z,A,B,Cmm, in mm, and NAME=labels:FILE:LABELS; over all labels
   std::vector<std::string>
       beside{};  ///< labels that are not meshed: vertices of the surface within `beside_within` of each are a set
   double beside_within = 0.006;  ///< [m]
@@ -32,10 +34,11 @@ struct ImageBody {
   double edges_across = 0.0;  ///< edges across the thickness of thin parts, which get shorter ones [-]; 0: they do not
   bool refine =
       true;  ///< regions that are torn or off in volume are meshed again with half the edges, three times at most
-  double edge = 0.006;               ///< mean length of edges [m], > 0
-  std::uint64_t max_tets = 5000000;  ///< more are refused
-  std::vector<MeshSize> sizes{};     ///< where edges are shorter
-  double growth = kGrowth;           ///< edge over distance at which edges grow away from these [-]
+  double edge = 0.006;                 ///< mean length of edges [m], > 0
+  std::uint64_t max_tets = 5000000;    ///< more are refused
+  std::vector<MeshSize> sizes{};       ///< where edges are shorter
+  std::filesystem::path size_image{};  ///< wanted edges [mm] on a grid of its own; empty: none
+  double growth = kGrowth;             ///< edge over distance at which edges grow away from these [-]
 
   template <class Take>
   static constexpr auto fields(Take take) {
@@ -44,12 +47,14 @@ struct ImageBody {
         field("path", &B::path,
               "the image: .nii, .nii.gz, .nrrd, .nhdr, .seg.nrrd, .mha or .mhd, relative to the scene")
             .must(),
+        no_key("image", &B::image),
         field("labels", &B::labels,
               "the regions: numbers or names of labels, joined by +, with a name in front: \"vessels=63+64\"")
             .must(),
-        field(
-            "implants", &B::implants,
-            "bodies put into it: \"tumour=ball:X,Y,Z,DIAMETERmm\" or \"…=ellipsoid:X,Y,Z,A,B,Cmm\" with its semi-axes"),
+        field("implants", &B::implants,
+              "bodies put into it: \"tumour=ball:X,Y,Z,DIAMETERmm\", \"…=ellipsoid:X,Y,Z,A,B,Cmm\" with its semi-axes, "
+              "or "
+              "\"…=labels:FILE\", all labels of another image, \"…=labels:FILE:2+lesion\" some of them"),
         field("beside", &B::beside,
               "labels that are not meshed, as in `labels`: the vertices of the body's surface near each are a set with "
               "its name, for supports"),
@@ -65,7 +70,12 @@ struct ImageBody {
               "a region that comes out in other pieces than its voxels, or by 3 % of another volume (below 5 mL 5 %), "
               "is meshed again with "
               "half the edges, three times at most"),
-        edge_field<B>(), max_tets_field<B>(), sizes_field<B>(), growth_field<B>());
+        edge_field<B>(), max_tets_field<B>(), sizes_field<B>(),
+        field("size_image", &B::size_image,
+              "an image of wanted edges in mm, on any grid: edges are no longer than it has there; voxels of 0 or less "
+              "and "
+              "NaN ask for nothing"),
+        growth_field<B>());
   }
 };
 
@@ -88,11 +98,12 @@ struct ImageRegion {
 struct ImageRegions {
   std::vector<BodyRegion>
       regions;  ///< implants, then the border of the image where it cuts the body (a hole), then the labels
-  std::vector<int> numbers;                ///< of each in the mesh; 0: the border
-  GroupImage labels;                       ///< after cleaning
-  std::vector<double> image_volumes;       ///< of each region [m³]; 0: the border
-  std::vector<std::string> implants;       ///< words of the body
-  std::function<void(TetMesh&)> add_sets;  ///< NAME_surface of each region, image_border, and those of `beside`
+  std::vector<int> numbers;                 ///< of each in the mesh; 0: the border
+  GroupImage labels;                        ///< after cleaning
+  std::vector<double> image_volumes;        ///< of each region [m³]; 0: the border
+  std::vector<std::size_t> implant_pieces;  ///< of each implant
+  std::function<void(TetMesh&)> add_sets;   ///< NAME_surface of each region, image_border, and those of `beside`
+  std::function<void(const TetMesh&, std::vector<ImageRegion>&)> measure;  ///< what measure_distances does
   std::vector<std::string> notes;
 };
 
@@ -111,6 +122,9 @@ ImageRegions image_regions(const ImageBody& body);
 /// The vertex sets that the mesh of a body has: NAME_surface of each region, those of `beside`, and `image_border`, which is there only where
 /// the image cuts the body. @throws as image_regions, for words and the header of the file
 std::vector<std::string> image_set_names(const ImageBody& body);
+
+/// Makes what a body names by a relative path (image, `size_image`, implants) relative to a folder. Words that are wrong stay as they are.
+void resolve_paths(ImageBody& body, const std::filesystem::path& folder);
 
 /// Edge of a cube of the volume of a voxel of a body's image, as it is meshed [m]. @throws ImageError
 double voxel_edge(const ImageBody& body);

@@ -31,6 +31,7 @@ struct ReadImageOptions {
   std::size_t margin = 0;  ///< voxels around that box that are kept, too
   /// Bytes that the voxels may take; none: what the machine has available.
   std::optional<double> memory{};
+  bool gaps = false;  ///< of a grey image: NaN is kept, a voxel without a value; else it is refused
 };
 
 /// Whether a name ends as one of the formats.
@@ -49,7 +50,7 @@ std::map<int, std::string> read_label_names(const std::filesystem::path& file);
 /// The grid of an image, by its header alone. @throws ImageError
 ImageGrid read_image_grid(const std::filesystem::path& file);
 
-/// Reads values, scaled as the file says. @throws ImageError as read_label_image, and for values that are not finite
+/// Reads values, scaled as the file says. @throws ImageError as read_label_image, and for values that are not finite, but for NaN where `gaps` says so
 GreyImage read_grey_image(const std::filesystem::path& file, const ReadImageOptions& options = {});
 
 }  // namespace glisson

@@ -28,6 +28,7 @@
 #include "glisson/material/tissue.h"
 #include "glisson/mesh.h"
 #include "glisson/scene/heat_spec.h"
+#include "glisson/scene/stiffness_image.h"
 #include "glisson/simulation/probe.h"
 #include "glisson/simulation/simulation.h"
 
@@ -343,6 +344,7 @@ struct Variant {
   std::map<std::string, Selection> sets;
   Tissue tissue;
   std::vector<RegionSpec> regions;
+  std::vector<StiffnessImage> stiffness;
   std::vector<FixedSpec> fixed;
   std::vector<LoadSpec> loads;
   std::vector<ToolSpec> tools;
@@ -369,7 +371,9 @@ bool any_tissue(const Variant& variant, Test test) {
 }
 /// Whether a variant has Kelvin–Voigt viscosity.
 inline bool is_viscous(const Variant& variant) {
-  return any_tissue(variant, [](const Tissue& t) { return t.viscosity > 0.0; });
+  return any_tissue(variant, [](const Tissue& t) { return t.viscosity > 0.0; }) ||
+         std::any_of(variant.stiffness.begin(), variant.stiffness.end(),
+                     [](const StiffnessImage& image) { return !image.loss.empty(); });
 }
 
 }  // namespace glisson

@@ -9,8 +9,8 @@
 #include <set>
 
 #include "base/available_memory.h"
-#include "base/nearest.h"
 #include "base/text.h"
+#include "image/labels_of_body.h"
 #include "image/read/image_header.h"
 
 namespace glisson::image {
@@ -196,15 +196,8 @@ Window box_of_labels(const ImageHeader& header, const ReadImageOptions& options)
     }
   }
   for (const int label : wanted) {
-    if (found.contains(label)) continue;
-    std::vector<std::string> there;
-    for (const int f : found) {
-      const auto name = header.names.find(f);
-      there.push_back(std::to_string(f) + (name == header.names.end() ? "" : " " + name->second));
-      if (there.size() == 100) break;
-    }
-    fail(header.data, "no voxel has the label " + std::to_string(label) +
-                          (there.empty() ? "; all are 0" : "; there are: " + scene::listed(there)));
+    if (!found.contains(label))
+      fail_without_label(header.data.file.string(), label, header.names, std::vector<int>(found.begin(), found.end()));
   }
   Window window;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -261,6 +254,7 @@ GreyImage read_grey(const ByteSource& source, const ReadImageOptions& options) {
                  "write the image with larger voxels, or a part of it");
   return read_window<GreyImage>(header, {{}, header.grid.size}, [&](double value, std::size_t i, std::size_t row) {
     if (std::abs(value) <= std::numeric_limits<float>::max()) return static_cast<float>(value);
+    if (options.gaps && std::isnan(value)) return std::numeric_limits<float>::quiet_NaN();
     fail(header.data, "voxel " + std::to_string(i) + " of row " + std::to_string(row + 1) + " is " +
                           detail::show(value) + ", which is no finite number of single precision");
   });

@@ -12,6 +12,7 @@
 #include "mesh/topology/require_valid.h"
 #include "scene/build/build_instruments.h"
 #include "scene/build/select.h"
+#include "scene/build/stiffness.h"
 #include "scene/build/supports.h"
 
 namespace glisson {
@@ -180,6 +181,7 @@ std::vector<std::shared_ptr<Instrument>> make_instruments(const Variant& variant
 Simulation simulation_of(const Variant& variant, TetMesh mesh,
                          std::span<const std::shared_ptr<Instrument>> instruments) {
   try {
+    scene::split_by_stiffness(variant, mesh);
     std::map<int, Tissue> tissues = region_tissues(variant, mesh);
     SimulationOptions options = variant.simulation;
     for (const auto& x : instruments) options.mesh_changes = options.mesh_changes || x->changes_body();
@@ -290,6 +292,7 @@ std::map<int, Tissue> region_tissues(const Variant& variant, const TetMesh& mesh
     const auto it = tissues.find(scene::region_number(mesh, region.name));
     if (it != tissues.end()) it->second = region.tissue;
   }
+  scene::set_band_tissues(variant, mesh, tissues);
   return tissues;
 }
 

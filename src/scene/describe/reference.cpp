@@ -40,6 +40,7 @@ std::string scene_reference_markdown() {
   text += section_text(time_law_section(), "`[tissue.maxwell.time_law]`");
   text += section_text(law_section(), "`[tissue.law]`, `[tissue.lambda_law]`, `[tissue.mu_law]`");
   text += section_text(region_section(), "`[[region]]`");
+  text += section_text(stiffness_section(), "`[[stiffness]]`");
   text += section_text(motion_section(), "`[motion]`");
   text += section_text(implicit_section(), "`[motion.implicit]`");
   text += section_text(fixed_section(), "`[[fixed]]`");

@@ -31,7 +31,7 @@ Each `[[variant]]` is one complete experiment: the scene with some keys changed.
 - A key removes the keys it excludes: a variant's `mu_law` replaces the scene's `law`, its `sphere_m` the scene's
   `box_m`.
 - Lists of numbers are replaced.
-- Lists of tables (`tool`, `instrument`, `fixed`, `load`, `region`, `capsule`, `probe`) are replaced by a list,
+- Lists of tables (`tool`, `instrument`, `fixed`, `load`, `region`, `stiffness`, `capsule`, `probe`) are replaced by a list,
   `[[variant.tool]]`. To change some keys of one element, write a table with its name or number instead:
   `tool.press.velocity_mm_s = 2`, `instrument.needle.motion.velocity_mm_s = 2`, or `fixed.0.axes = "z"`. Tools,
   instruments, regions and probes are found by their `name`, loads and fixed sets by their `set`; numbers count from 0.

@@ -145,6 +145,7 @@ const SectionSpec& variant_section() {
     s.named_tables("sets", selection_section(), &Variant::sets, "vertex sets by place");
     s.table("tissue", tissue_section(), &Variant::tissue, "the body's material");
     s.tables("region", region_section(), &Variant::regions, "parts with their own tissue");
+    s.tables("stiffness", stiffness_section(), &Variant::stiffness, "moduli of tets from images of elastography");
     s.table(
         "motion", motion_section(), [](Variant& v) -> Variant& { return v; }, "time, damping, gravity");
     s.tables("fixed", fixed_section(), &Variant::fixed, "sets that are held");

@@ -147,6 +147,16 @@ const SectionSpec& tissue_section() {
   return section;
 }
 
+const SectionSpec& stiffness_section() {
+  static const SectionSpec section = described<StiffnessImage>(
+      "Young's modulus of each tet from an image of elastography, on a grid of its own: the mean over the voxels in "
+      "the tet. Tets of like "
+      "modulus become a region, \"liver 5.012 kPa\", with all else of the tissue of their region; where the image has "
+      "no value above 0 the tissue "
+      "keeps its own (docs/image.md).");
+  return section;
+}
+
 const SectionSpec& region_section() {
   static const SectionSpec section = [] {
     Section<RegionSpec> s("region",

@@ -27,6 +27,7 @@ const SectionSpec& tissue_section();             ///< fills Tissue
 const SectionSpec& region_section();             ///< fills RegionSpec
 const SectionSpec& implicit_section();           ///< fills ImplicitOptions
 const SectionSpec& motion_section();             ///< fills Variant
+const SectionSpec& stiffness_section();          ///< fills StiffnessImage
 const SectionSpec& fixed_section();              ///< fills FixedSpec
 const SectionSpec& load_section();               ///< fills LoadSpec
 const SectionSpec& record_section();             ///< fills RecordSpec
