@@ -72,7 +72,11 @@ std::vector<std::size_t> longest_first(const std::vector<Job>& jobs) {
 }  // namespace
 
 void require_runnable(const std::vector<Job>& jobs, const MeshLoader& load) {
-  for (const Job& job : jobs) build_variant(job.variant, load);
+  for (const Job& job : jobs) {
+    Variant variant = job.variant;
+    variant.start = Start::rest;  // the unloaded shape is found once, when the job begins
+    build_variant(variant, load);
+  }
 }
 
 std::vector<std::unique_ptr<VariantRecorder>> run_batch(const std::vector<Job>& jobs, const BatchOptions& options,

@@ -15,6 +15,7 @@ void add_check(CLI::App& program, Action& action);
 void add_converge(CLI::App& program, Action& action);
 void add_compare(CLI::App& program, Action& action);
 void add_mesh(CLI::App& program, Action& action);
+void add_scene(CLI::App& program, Action& action);
 void add_info(CLI::App& program, Action& action);
 void add_image(CLI::App& program, Action& action);
 void add_reproduce(CLI::App& program, Action& action);

@@ -104,6 +104,7 @@ int run_program(int argc, char** argv) {
   add_check(program, action);
   add_converge(program, action);
   add_compare(program, action);
+  add_scene(program, action);
   add_mesh(program, action);
   add_info(program, action);
   add_image(program, action);

@@ -32,6 +32,7 @@
 #include "glisson/simulation/probe.h"
 #include "glisson/simulation/simulation.h"
 #include "glisson/simulation/tet_fields.h"
+#include "glisson/simulation/unloaded_shape.h"
 #include "glisson/surface_region.h"
 #include "glisson/tet_gradient.h"
 #include "glisson/torsion.h"

@@ -33,6 +33,7 @@ void bind_variant(nb::module_& m) {
       .def_rw("label", &Variant::label)
       .def_rw("tissue", &Variant::tissue)
       .def_rw("simulation", &Variant::simulation)
+      .def_rw("start", &Variant::start, doc("Start"))
       .def_rw("on_inversion", &Variant::on_inversion, doc("OnInversion"))
       .def_rw("duration", &Variant::duration, doc(of("duration")))
       .def_rw("max_steps", &Variant::max_steps, doc(of("max_steps")))

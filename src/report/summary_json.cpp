@@ -67,6 +67,13 @@ nlohmann::ordered_json summary_json(const RunSummary& s, const Variant& variant,
   json["time_s"] = s.time_s;
   json["step_s"] = s.step_s;
   json["stable_step_s"] = s.stable_step_s;
+  if (s.unloaded) {
+    json["unloaded"] = {{"bodies", s.unloaded->iterations},
+                        {"off_m", s.unloaded->off},
+                        {"largest_shift_m", s.unloaded->largest_shift},
+                        {"volume_m3", s.unloaded->volume},
+                        {"unloaded_volume_m3", s.unloaded->unloaded_volume}};
+  }
   if (s.mass_added_kg > 0.0) json["mass_added_kg"] = s.mass_added_kg;
   json["wall_s"] = s.wall_s;
   json["ns_per_tet_step"] = s.ns_per_tet_step;

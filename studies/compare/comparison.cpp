@@ -43,6 +43,7 @@ void require_comparable(const Variant& v) {
   if (!v.instruments.empty()) odd.emplace_back("[[instrument]]");
   if (!v.capsules.empty()) odd.emplace_back("[[capsule]]");
   if (v.container) odd.emplace_back("[container]");
+  if (v.start == Start::loaded) odd.emplace_back("motion.start = \"loaded\"");
   if (!v.loads.empty()) odd.emplace_back("[[load]]");
   const auto moves = [](const FixedSpec& f) { return f.record.has_value(); };
   if (std::any_of(v.fixed.begin(), v.fixed.end(), moves)) odd.emplace_back("a [[fixed]] set that moves");

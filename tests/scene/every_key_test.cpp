@@ -90,6 +90,7 @@ damping_rate_per_s = 3
 nodal_damping_kg_per_s = 0.002
 gravity_m_s2 = [0, 0, -9.81]
 gravity_ramp_s = 0.5
+start = "rest"
 on_inversion = "stop"
 duration_s = 2.5
 max_steps = 1000
@@ -345,6 +346,7 @@ TEST(EveryKey, OfMotionToolsAndOutputIsRead) {
   expect_equal(v.simulation.gravity, {0, 0, -9.81});
   EXPECT_EQ(v.simulation.gravity_ramp, 0.5);
   EXPECT_TRUE(v.simulation.enforce_stability) << "no scene may exceed the stable step";
+  EXPECT_EQ(v.start, Start::rest) << "with gravity_ramp_s; loaded_start_test.cpp has the other";
   EXPECT_EQ(v.on_inversion, OnInversion::stop);
   EXPECT_EQ(v.duration, 2.5);
   EXPECT_EQ(v.max_steps, 1000u);

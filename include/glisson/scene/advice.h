@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -49,8 +50,9 @@ struct VariantAtRest {
   VariantAtRest() = default;
   VariantAtRest(const Variant& variant, const Simulation& simulation);
 
-  TetMesh mesh;
-  MeshReport report;                                        ///< of the mesh
+  TetMesh mesh;                         ///< where the run starts, that of the scene
+  std::optional<double> largest_shift;  ///< of Start::loaded: of a vertex from its unloaded place [m]
+  MeshReport report;                    ///< of the mesh
   double step_s = 0.0, stable_step_s = 0.0, mass_kg = 0.0;  ///< stable_step_s: infinite where any step is stable
   MassScaling scaling;
   std::vector<LimitingTet> limits;  ///< of an explicit step: the twentieth of the tets with the smallest bounds

@@ -16,6 +16,7 @@
 #include "glisson/scene/compare_spec.h"
 #include "glisson/scene/variant.h"
 #include "glisson/simulation/energy_watch.h"
+#include "glisson/simulation/unloaded_shape.h"
 
 namespace glisson {
 
@@ -146,8 +147,9 @@ struct RunSummary {
   std::uint64_t unmet_contact_steps = 0;  ///< in which contact of all tools could not be met (StepResult::contact_met)
   double first_unmet_contact_s = -1.0;    ///< time of the first; −1: none
   std::uint64_t state_hash = 0;
-  std::string instruction_set{};         ///< of the element kernels; the hash is one of this set
-  std::vector<std::string> never_met{};  ///< instruments without a force or an event in a run that came to its end
+  std::string instruction_set{};              ///< of the element kernels; the hash is one of this set
+  std::optional<UnloadedFigures> unloaded{};  ///< of Start::loaded
+  std::vector<std::string> never_met{};       ///< instruments without a force or an event in a run that came to its end
   enum class End {
     finished,
     interrupted,
@@ -204,7 +206,8 @@ std::map<int, Tissue> region_tissues(const Variant& variant, const TetMesh& mesh
 /// The largest SimulationOptions::drag_stages with everything that acts on the body (Interaction::most_drag_stages).
 int most_drag_stages(const Variant& variant);
 
-/// The body of a variant with its supports, loads, instruments and probes, at rest.
+/// The body of a variant with its supports, loads, instruments and probes, at rest; with Start::loaded in equilibrium at the places
+/// that the mesh of the variant has. Places of the scene (sets, regions, aims, probes) are those of that mesh.
 struct BuiltVariant {
   /// @throws SceneError if mesh, sets, tissues, step or constraints cannot be used, or it is of heat alone
   BuiltVariant(const Variant& variant, const MeshLoader& load);
@@ -216,9 +219,12 @@ struct BuiltVariant {
   std::shared_ptr<Container> container;            ///< null: none
   Probes probes;                                   ///< per variant.probes
   std::shared_ptr<HeatCoupling> heat;              ///< of [heat.ice] (heat_run.h); null: none
+  std::optional<UnloadedFigures> unloaded;         ///< of Start::loaded; the simulation's mesh is the unloaded shape
 
  private:
   BuiltVariant(TetMesh mesh, const Variant& variant);
+  BuiltVariant(TetMesh mesh, const std::optional<UnloadedShape>& unloaded, const Variant& variant);
+  static std::optional<UnloadedShape> unload(const Variant& variant, const TetMesh& mesh);
 };
 /// @throws SceneError, as BuiltVariant
 BuiltVariant build_variant(const Variant& variant, const MeshLoader& load);

@@ -336,6 +336,18 @@ struct OutputSpec {
   }
 };
 
+/// The state in which a run starts.
+enum class Start {
+  rest,   ///< the mesh is the body without loads
+  loaded  ///< the mesh is the body in equilibrium under what acts on it at time 0 (find_unloaded_shape)
+};
+template <>
+inline constexpr Word<Start> kWords<Start>[] = {
+    {"rest", Start::rest, "the mesh is the body without loads; gravity acts from then on"},
+    {"loaded", Start::loaded,
+     "the mesh, as one of an image, is the body in equilibrium under gravity and the loads of time 0 on its supports; "
+     "the shape without them is found before the run"}};
+
 /// One complete experiment: a variant of a scene after expansion.
 struct Variant {
   std::string name = "main";
@@ -354,6 +366,8 @@ struct Variant {
   std::vector<ProbeSpec> probes;
   std::optional<HeatSpec> heat;  ///< alone (is_heat_alone), or beside the mechanics
   SimulationOptions simulation;
+  Start start = Start::rest;
+  std::string start_origin;  ///< place of `start` in the scene
   OnInversion on_inversion = OnInversion::go_on;
   std::optional<double> duration;          ///< [s]; none: until the last motion has ended
   std::optional<std::uint64_t> max_steps;  ///< stops after that many steps

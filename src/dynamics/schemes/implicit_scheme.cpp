@@ -16,6 +16,10 @@ constexpr double kDefaultStep = 0.01, kDefaultStaticStep = 0.05;  ///< [s]
 constexpr double kGrowth = 1.5;                                   ///< of an automatic step after an easy one
 constexpr int kMostEventCuts = 7;                                 ///< events are dated to 1/128 of a step
 
+/// Tets up to which inverse statics factorises: one factor serves all its iterations.
+constexpr std::size_t kMostFactorisedInverse = 200000;
+constexpr double kResponse = 1e-6;  ///< accuracy of a response to forces
+
 constexpr double kSameTime = 1e-9;  ///< of a step: corners so near are one
 constexpr double kSliver = 1e-3;    ///< of a step: so much longer than the largest it may be
 
@@ -139,7 +143,6 @@ void ImplicitScheme::start_fresh() {
   fresh_ = false;
 }
 
-/// Per component: held by a constraint, or by a spring to the ground.
 std::vector<char> ImplicitScheme::held_or_sprung() const {
   std::vector<char> held = solver_.held();
   for (std::size_t c = 0; c < held.size(); ++c) held[c] = held[c] != 0 || state_.loads.spring(c / 3)[c % 3] > 0.0;
@@ -291,6 +294,7 @@ void ImplicitScheme::restore(Backup before) {
 StepResult ImplicitScheme::begin() {
   start_fresh();
   if (statics_ && !(message_ = free_rigid_motion(state_.body, held_or_sprung())).empty()) {
+    message_ = "quasi_static: " + message_ + ", or take the integrator \"implicit\"";
     fresh_ = true;
     return {StepStatus::not_held, {}, message_};
   }
@@ -444,5 +448,27 @@ Vec3d ImplicitScheme::torque(ConstraintId constraint, const Vec3d& about) const 
   }
   return sum;
 }
+
+Imbalance StaticScheme::imbalance_at(std::span<const Vec3d> u) {
+  set_state(u, std::vector<Vec3d>(u.size()));
+  solver().begin();
+  return solver().imbalance_at(u);
+}
+
+void StaticScheme::linearise() {
+  if (body().elements.size() <= kMostFactorisedInverse) solver().need_factor();
+  solver().linearise_here();
+}
+
+bool StaticScheme::is_stable() {
+  if (body().elements.size() <= kMostFactorisedInverse) solver().need_factor();
+  return solver().is_stable_here();
+}
+
+bool StaticScheme::respond(std::span<const Vec3d> forces, std::vector<Vec3d>& displacement) {
+  return solver().respond(forces, kResponse, displacement);
+}
+
+std::string StaticScheme::free_motion() const { return free_rigid_motion(body(), held_or_sprung()); }
 
 }  // namespace glisson

@@ -65,6 +65,9 @@ class ImplicitScheme : public Scheme {
   std::vector<Sym3<double>> branch_stresses(std::size_t block) override {
     return tissue_.branch_stresses(block, now_.u);
   }
+  BalanceSolver& solver() { return solver_; }
+  /// Per component: held by a constraint, or by a spring to the ground.
+  std::vector<char> held_or_sprung() const;
   void take_tissues(const TissueChange& change) override;
   void take_back_tissues(const TissueChange& change) override { take_tissues(change); }
 
@@ -86,7 +89,6 @@ class ImplicitScheme : public Scheme {
   ElementWatch& watch() { return solver_.watch(); }
   double next_end() const;
   void start_fresh();
-  std::vector<char> held_or_sprung() const;
   enum class Part { made, no_balance, overshoots };
   Part part(double h, bool dates_events);
   Part stage(const TimeStep& s, bool dates_events);
@@ -138,6 +140,19 @@ class StaticScheme final : public ImplicitScheme {
   static constexpr IntegratorInfo kInfo{Integrator::quasi_static, ImplicitScheme::kInfo.can};
 
   StaticScheme(Body body, const SimulationOptions& options) : ImplicitScheme(std::move(body), options, true) {}
+
+  /// Takes a displacement as the state, in which branches have relaxed. @return how far it is from equilibrium now
+  Imbalance imbalance_at(std::span<const Vec3d> u);
+  /// Takes the definite tangent there, with a factor where the body is not too large for one.
+  void linearise();
+  /// As BalanceSolver::is_stable_here; linearise() comes next, if anything does.
+  bool is_stable();
+  /// The displacement that forces give by that tangent [m]. @return whether it is finite
+  bool respond(std::span<const Vec3d> forces, std::vector<Vec3d>& displacement);
+  /// Per component (3 i + axis), after imbalance_at(): not 0 where it is held.
+  const std::vector<char>& held_components() { return solver().held(); }
+  /// Why supports leave a rigid motion free, and what to do; empty where they do not.
+  std::string free_motion() const;
 };
 
 }  // namespace glisson

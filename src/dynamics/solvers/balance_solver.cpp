@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 
 namespace glisson {
 namespace {
@@ -193,6 +194,35 @@ void BalanceSolver::linearise(const TimeStep& s, bool semidefinite, bool anew) {
                     {s.v_rate, 1.0 - s.alpha_f, diagonal_, state_.loads.stiffness(time, state_.body, at_u_),
                      contact_.stiffness(), contact_.tet_stiffness(s.v_rate)},
                     semidefinite, anew);
+}
+
+Imbalance BalanceSolver::imbalance_at(std::span<const Vec3d> u) {
+  next_.u.assign(u.begin(), u.end());
+  const TimeStep now = static_step(0.0);
+  try_at(now);
+  load(now);
+  const Balance balance = evaluate(now);
+  flat(std::span<Vec3d>(out_of_balance_)) *= -1.0;
+  return {balance.residual, balance.scale, out_of_balance_};
+}
+
+bool BalanceSolver::is_stable_here() {
+  linearise(static_step(0.0), false);
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> number(-1.0, 1.0);
+  Eigen::VectorXd force(static_cast<Eigen::Index>(held_.size())), moved;
+  for (std::size_t c = 0; c < held_.size(); ++c) {
+    force[static_cast<Eigen::Index>(c)] = held_[c] != 0 ? 0.0 : number(random);
+  }
+  return !system_.solve(force, kForcing, moved).curved;
+}
+
+bool BalanceSolver::respond(std::span<const Vec3d> forces, double accuracy, std::vector<Vec3d>& displacement) {
+  Eigen::VectorXd moved;
+  system_.solve(flat(forces), accuracy, moved);
+  displacement.resize(forces.size());
+  flat(std::span<Vec3d>(displacement)) = moved;
+  return moved.allFinite();
 }
 
 /// A first u⁺: the motion goes on as it was. Where that turns tets inside out, from where the body is, with the change

@@ -35,6 +35,13 @@ struct Moment {
   }
 };
 
+/// How far a state is from equilibrium.
+struct Imbalance {
+  double residual = 0.0;          ///< norm of the forces out of balance on the free components [N]
+  double scale = 0.0;             ///< norm of the largest kind of force [N]
+  std::span<const Vec3d> forces;  ///< what the body pulls and is pulled with on the free components, per vertex [N]
+};
+
 class BalanceSolver {
  public:
   /// All must outlive this. @param now  where steps start from  @param statics  without M and γ
@@ -52,6 +59,14 @@ class BalanceSolver {
   StepInterrupt& interrupt() { return interrupt_; }
   /// Takes the step that was solved for back.
   void give_up();
+  /// In statics, after begin(): how far a displacement of the free components is from equilibrium now. Valid until the next call.
+  Imbalance imbalance_at(std::span<const Vec3d> u);
+  /// Takes the definite tangent at the last imbalance_at().
+  void linearise_here() { linearise(static_step(0.0), true); }
+  /// Whether the equilibrium at the last imbalance_at() is stable, as far as conjugate gradients see: with a symmetric tangent.
+  bool is_stable_here();
+  /// The displacement that forces on the free components give by the tangent that was taken last [m]. @return whether it is finite
+  bool respond(std::span<const Vec3d> forces, double accuracy, std::vector<Vec3d>& displacement);
   Moment& next() { return next_; }
   StepContact& contact() { return contact_; }
   const StepContact& contact() const { return contact_; }

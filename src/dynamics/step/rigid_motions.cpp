@@ -44,11 +44,9 @@ std::string describe(const Piece& piece, const Eigen::Matrix<double, 6, 1>& moti
   Eigen::Index worst = 0;
   motion.cwiseAbs().maxCoeff(&worst);
   std::ostringstream text;
-  text << "quasi_static: a piece of " << piece.vertices << " vertices around (" << piece.centre.x << ", "
-       << piece.centre.y << ", " << piece.centre.z << ") m can " << (worst < 3 ? "move along " : "turn around ")
-       << "xyz"[worst % 3]
-       << " as a rigid body, so that it has no equilibrium. Hold at least three vertices of it that are not on a line, "
-       << "or take the integrator \"implicit\"";
+  text << "a piece of " << piece.vertices << " vertices around (" << piece.centre.x << ", " << piece.centre.y << ", "
+       << piece.centre.z << ") m can " << (worst < 3 ? "move along " : "turn around ") << "xyz"[worst % 3]
+       << " as a rigid body, so that it has no equilibrium. Hold at least three vertices of it that are not on a line";
   return text.str();
 }
 

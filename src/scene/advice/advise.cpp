@@ -84,6 +84,13 @@ void look_at_tools(Collector& to, const Variant& v, const TetMesh& mesh) {
   }
 }
 
+/// The mesh of the scene: of a variant that starts loaded, not that at rest.
+TetMesh starting_mesh(const Variant& variant, const Simulation& simulation) {
+  TetMesh mesh = simulation.mesh();
+  if (variant.start == Start::loaded) mesh.vertices = simulation.positions();
+  return mesh;
+}
+
 /// No time for any trial.
 class NoTrials : public TrialTime {
  public:
@@ -100,7 +107,7 @@ std::vector<Advice> on_all(const Variant& variant, const VariantAtRest& rest, co
 }  // namespace advice
 
 VariantAtRest::VariantAtRest(const Variant& variant, const Simulation& simulation)
-    : mesh(simulation.mesh()), report(inspect(mesh)), step_s(simulation.step_size()),
+    : mesh(advice::starting_mesh(variant, simulation)), report(inspect(mesh)), step_s(simulation.step_size()),
       stable_step_s(simulation.stable_step()), scaling(simulation.mass_scaling()) {
   constexpr std::size_t kFew = 20;            // one tet in so many is what may keep the step short alone
   constexpr std::size_t kMostCorners = 1000;  // that are looked at
@@ -109,6 +116,10 @@ VariantAtRest::VariantAtRest(const Variant& variant, const Simulation& simulatio
     corners.push_back(t);
   if (std::isfinite(end)) corners.push_back(end);
   for (const double m : simulation.masses()) mass_kg += m;
+  if (variant.start == Start::loaded) {
+    largest_shift = 0.0;
+    for (const Vec3d& u : simulation.displacement()) largest_shift = std::max(*largest_shift, norm(u));
+  }
   if (std::isfinite(stable_step_s)) limits = simulation.limiting_tets(mesh.tets.size() / kFew + 1);
 }
 
@@ -116,6 +127,7 @@ std::vector<Advice> advise_on_body(const Variant& variant, const VariantAtRest& 
   advice::Collector to(variant.name);
   to.turn_to(Advice::About::mesh);
   to.add("mesh", Advice::Kind::warning, advice::mesh_warnings(variant, rest));
+  to.add("loaded", Advice::Kind::remark, advice::loaded(rest));
   advice::look_at_bounds(to, variant, rest.mesh);
   advice::look_at_tissues(to, variant);
   advice::look_at_tools(to, variant, rest.mesh);

@@ -14,6 +14,9 @@ namespace glisson::advice {
 /// What inspection finds, but for meshes from files, whose reader has said it.
 Texts mesh_warnings(const Variant& variant, const VariantAtRest& rest);
 
+/// How far the unloaded shape of a run that starts loaded is from the mesh.
+Texts loaded(const VariantAtRest& rest);
+
 /// A set or region about whose bounds vertices or tets have been counted.
 struct NearSelection {
   std::string name;

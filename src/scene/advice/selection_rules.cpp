@@ -9,6 +9,12 @@ Texts mesh_warnings(const Variant& v, const VariantAtRest& rest) {
   return std::holds_alternative<MeshFile>(v.mesh) ? Texts{} : rest.report.warnings;
 }
 
+Texts loaded(const VariantAtRest& rest) {
+  if (!rest.largest_shift) return {};
+  return {fill("the run starts loaded: a vertex of the unloaded shape is up to {} mm from its place in the mesh",
+               {digits(3, 1e3 * *rest.largest_shift)})};
+}
+
 Texts rounding(const NearSelection& s) {
   if (s.near.by_rounding == 0) return {};
   return {fill("\"{}\": {}, {} of them outside of its bounds by rounding alone: what lies within {} mm of these counts",

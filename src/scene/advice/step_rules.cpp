@@ -13,6 +13,7 @@ constexpr double kAutomatic = 0.9;  ///< automatic step over the stable one
 /// How many times as long the stable step at rest is with mass added to the tets below a step.
 double growth_with_mass(const StepCase& c, double step) {
   Variant scaled = c.variant;
+  scaled.start = Start::rest;
   scaled.simulation.step.reset();
   scaled.simulation.mass_scaling_step = step;
   return build_variant(scaled, c.load).simulation.stable_step() / c.rest.stable_step_s;
@@ -28,6 +29,7 @@ struct ViscousCure {
 ViscousCure with_stages(const StepCase& c, int count) {
   constexpr double kCost = 0.5;  // of a stage, in steps
   Variant staged = c.variant;
+  staged.start = Start::rest;
   staged.simulation.step.reset();
   staged.simulation.drag_stages = count;
   ViscousCure cure{"", build_variant(staged, c.load).simulation.stable_step() / c.rest.stable_step_s,
@@ -42,6 +44,7 @@ ViscousCure with_stages(const StepCase& c, int count) {
 ViscousCure with_solves(const StepCase& c) {
   constexpr double kTimesOwn = 4.0, kLeastCost = 8.0, kCostOfATet = 0.0036;
   Variant solved = c.variant;
+  solved.start = Start::rest;
   SimulationOptions& o = solved.simulation;
   o.step.reset();
   o.integrator = Integrator::semi_implicit;

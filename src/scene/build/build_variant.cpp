@@ -11,6 +11,7 @@
 #include "mesh/inspect/vertex_set.h"
 #include "mesh/topology/require_valid.h"
 #include "scene/build/build_instruments.h"
+#include "scene/build/loaded_start.h"
 #include "scene/build/select.h"
 #include "scene/build/stiffness.h"
 #include "scene/build/supports.h"
@@ -193,6 +194,20 @@ Simulation simulation_of(const Variant& variant, TetMesh mesh,
   }
 }
 
+/// The mesh with its vertices at other places.
+TetMesh at_places(const TetMesh& mesh, const std::vector<Vec3d>& places) {
+  TetMesh moved = mesh;
+  moved.vertices = places;
+  return moved;
+}
+
+/// Lets a body start where it is in equilibrium.
+void take_loaded(const TetMesh& loaded, const UnloadedShape& shape, Simulation& simulation) {
+  std::vector<Vec3d> u(loaded.vertices.size());
+  for (std::size_t v = 0; v < u.size(); ++v) u[v] = loaded.vertices[v] - shape.rest[v];
+  simulation.set_state(u, std::vector<Vec3d>(u.size()));
+}
+
 /// The course of a load in time; none: always 1.
 TimeFunction<double> course_of(const LoadSpec& load) {
   if (!load.times.empty()) {
@@ -260,12 +275,14 @@ std::function<ProbeTip()> tip_of(const ProbeSpec& probe, const BuiltVariant& bui
 }
 
 /// Each probe is tried on its own first, so that the message names its place in the scene.
-Probes probes_of(const Variant& variant, const BuiltVariant& built) {
+/// @param loaded  the body of a variant that starts loaded, in which the places of probes are; null: they are in that at rest
+Probes probes_of(const Variant& variant, const BuiltVariant& built, const TetMesh* loaded) {
   std::vector<ProbeOptions> options;
   for (const ProbeSpec& x : variant.probes) {
     options.push_back(x.options);
     located(variant, x.origin, [&] {
       if (!x.tip.empty()) options.back().tip = tip_of(x, built, variant.tools.size());
+      if (loaded) scene::move_to_rest(*loaded, built.simulation.mesh().vertices, options.back());
       return Probes(built.simulation, {options.back()});
     });
   }
@@ -300,8 +317,34 @@ BuiltVariant::BuiltVariant(const Variant& variant, const MeshLoader& load)
     : BuiltVariant(build_mesh(with_mechanics(variant), load), variant) {}
 
 BuiltVariant::BuiltVariant(TetMesh whole, const Variant& variant)
-    : instruments(make_instruments(variant, whole)), simulation(simulation_of(variant, std::move(whole), instruments)) {
+    : BuiltVariant(whole, unload(variant, whole), variant) {}
+
+/// The shape at rest of a variant that starts loaded; none of another one.
+std::optional<UnloadedShape> BuiltVariant::unload(const Variant& variant, const TetMesh& mesh) {
+  if (variant.start != Start::loaded) return {};
+  const std::string at = variant.start_origin.empty() ? "motion.start: " : "";
+  if (const std::string why = scene::refuses_loaded_start(variant); !why.empty())
+    fail(variant, variant.start_origin, at + why);
+  const Variant still = scene::still_variant(variant);
+  Variant part = still;
+  const auto body = [&](TetMesh rest, double share) {
+    scene::take_share(still, share, part);
+    return std::move(BuiltVariant(std::move(rest), {}, part).simulation);
+  };
+  try {
+    return find_unloaded_shape(mesh, body);
+  } catch (const NoUnloadedShape& error) {
+    fail(variant, variant.start_origin, at + error.what());
+  } catch (const std::invalid_argument& error) {
+    fail(variant, variant.start_origin, at + error.what());
+  }
+}
+
+BuiltVariant::BuiltVariant(TetMesh whole, const std::optional<UnloadedShape>& shape, const Variant& variant)
+    : instruments(make_instruments(variant, whole)),
+      simulation(simulation_of(variant, shape ? at_places(whole, shape->rest) : std::move(whole), instruments)) {
   const TetMesh& mesh = simulation.mesh();
+  if (shape) take_loaded(whole, *shape, simulation);
   for (std::size_t i = 0; i < variant.fixed.size(); ++i) {
     const FixedSpec& x = variant.fixed[i];
     const auto& set = set_called(variant, mesh, x.set, x.origin);
@@ -317,7 +360,11 @@ BuiltVariant::BuiltVariant(TetMesh whole, const Variant& variant)
     located(variant, x.origin, [&] { return simulation.add_surface_load(set, x.load, course_of(x)); });
   }
   attach_interactions(variant, *this);
-  probes = probes_of(variant, *this);
+  if (shape) {
+    take_loaded(whole, *shape, simulation);  // with the energy of what was attached
+    unloaded = shape->figures;
+  }
+  probes = probes_of(variant, *this, shape ? &whole : nullptr);
   if (variant.heat && variant.heat->ice) attach_heat(variant, *this);
 }
 

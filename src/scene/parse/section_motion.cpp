@@ -42,6 +42,23 @@ void check_load(LoadSpec& load, const Node& table, const Place& place) {
   }
 }
 
+/// What must hold of a run that starts loaded.
+void check_start(Variant& variant, const Node& table, const Place& place) {
+  const Node* start = table.find("start");
+  if (!start || variant.start != Start::loaded) return;
+  variant.start_origin = place.inside("start", start->where).text();
+  const SimulationOptions& options = variant.simulation;
+  if (const Node* ramp = table.find("gravity_ramp_s"); ramp && options.gravity_ramp > 0.0) {
+    place.complain(*ramp, "gravity_ramp_s",
+                   "start = \"loaded\" begins under the whole gravity; leave it out, or take start = \"rest\"");
+  }
+  if (options.mass_scaling_step && options.mass_scaling == MassScalingKind::fixed) {
+    place.complain(*table.find("mass_scaling_step_s"), "mass_scaling_step_s",
+                   "start = \"loaded\" does not support mass that is added for the whole run, which has a weight; take "
+                   "mass_scaling = \"variable\", or leave it out");
+  }
+}
+
 /// What must hold of a tool's direction.
 void check_tool(ToolSpec& tool, const Node& table, const Place& place) {
   tool.origin = place.text();
@@ -80,6 +97,7 @@ const SectionSpec& motion_section() {
     Section<Variant> s("motion",
                        "Time integration: the integrator, its step, damping, gravity, and the end of the run.");
     s.fields(&Variant::simulation);
+    s.key("start", &Variant::start, "the state of the body in the mesh, in which the run starts");
     s.key("on_inversion", &Variant::on_inversion, "what to do when a tetrahedron inverts");
     s.key("duration_s", &Variant::duration, "simulated time")
         .in("s")
@@ -88,6 +106,7 @@ const SectionSpec& motion_section() {
     s.key("max_steps", &Variant::max_steps, "the run ends after that many steps")
         .within(between(1, Codec<std::uint64_t>::kLargest))
         .otherwise("no limit");
+    s.finish(check_start);
     return s.spec();
   }();
   return section;

@@ -328,6 +328,7 @@ void Run::summarise() {
   summary_.stored_energy_J = simulation_.stored_energy();
   if (variant_.simulation.track_energies) see_drift();
   summary_.mass_added_kg = simulation_.mass_scaling().added + simulation_.mass_scaling().largest;
+  summary_.unloaded = built_.unloaded;
   summary_.state_hash = simulation_.state_hash();
   summary_.instruction_set = simulation_.engine_info().instruction_set;
   if (variant_.simulation.track_energies) summary_.energy_gain = watch_.gain();
