@@ -63,6 +63,15 @@ TEST_F(HeatRun, LeavesTablesFramesAndChecks) {
   EXPECT_EQ(scene["checks"].size(), 3U);
   EXPECT_EQ(scene["charts"][0]["title"], "Temperatures");
   EXPECT_EQ(scene["charts"][0]["lines"][0]["label"], "near");
+  const nlohmann::json& surface = scene["variants"][0]["surface"];
+  EXPECT_EQ(surface["isotherms"], nlohmann::json::parse(R"([{"name": "cold", "temperature_C": -20.0}])"));
+  ASSERT_EQ(surface["instruments"].size(), 1U) << "the probe is drawn as a needle";
+  EXPECT_EQ(surface["instruments"][0]["name"], "needle");
+  EXPECT_FALSE(surface["tets"].get<std::string>().empty()) << "isotherms are surfaces within the tets";
+  ASSERT_EQ(surface["frames"].size(), 3U);
+  EXPECT_EQ(surface["frames"][0]["fields"]["temperature"]["high"], 37.0);
+  EXPECT_NEAR(surface["frames"][2]["fields"]["temperature"]["low"].get<double>(), h["lowest_C"].back(), 1e-9);
+  EXPECT_EQ(surface["frames"][2]["displacement"], "") << "it rests";
   const auto frames = read_pvd(folder_ / "o/main/frames.pvd");
   ASSERT_EQ(frames.size(), 3U);
   EXPECT_EQ(frames.back().first, 60.0);
