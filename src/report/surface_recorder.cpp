@@ -16,6 +16,7 @@ namespace {
 constexpr std::uint32_t kInside = std::numeric_limits<std::uint32_t>::max();
 // Of a vertex in a frame: displacement, s, pressure, von Mises' stress, and where something touches the contact pressure.
 constexpr double kBase64BytesPerVertex = 10.0 * 4.0 / 3.0, kBase64BytesPerTet = 16.0 * 4.0 / 3.0;
+constexpr double kDrawnRadius = 0.75e-3;          // of a probe that gives heat on its axis [m]
 constexpr double kBase64BytesAtRest = 4.0 / 3.0;  // of a body that has a temperature alone
 
 /// 2 where a tool drives the vertex, 1 where a support holds it, 0 where it is free; per mesh vertex.
@@ -226,12 +227,13 @@ void SurfaceRecorder::set_heat(const HeatSpec& heat) {
     head_["isotherms"].push_back({{"name", x.name}, {"temperature_C", x.temperature}});
   for (std::size_t k = 0; heat.isotherms.empty() && k < heat.options.isotherms.size(); ++k)
     head_["isotherms"].push_back({{"name", ""}, {"temperature_C", heat.options.isotherms[k]}});
-  if (!instruments_.empty()) return;  // the needle of the mechanics is the probe
   const auto add = [&](const std::string& name, const Vec3d& tip, const Vec3d& shaft, double radius) {
     nlohmann::json points = floats_of(shaft);
     for (const float x : floats_of(tip)) points.push_back(x);
-    head_["instruments"].push_back(
-        {{"name", name}, {"kind", "needle"}, {"radius_m", radius}, {"length_m", norm(shaft - tip)}});
+    head_["instruments"].push_back({{"name", name},
+                                    {"kind", "needle"},
+                                    {"radius_m", radius > 0.0 ? radius : kDrawnRadius},
+                                    {"length_m", norm(shaft - tip)}});
     probes_.push_back({{"points", std::move(points)}, {"axes", {1, 0, 0, 0, 1, 0, 0, 0, 1}}});
   };
   for (const HeatProbeSpec& x : heat.probes) add(x.name, x.from, x.to, x.radius);
