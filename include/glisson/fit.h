@@ -31,7 +31,8 @@ enum class LabTest {
   simple_shear,
   torsion,
   oscillation,
-  indentation
+  indentation,
+  heat
 };
 }  // namespace glisson::fit
 
@@ -49,8 +50,9 @@ inline constexpr Word<fit::LabTest> kWords<fit::LabTest>[] = {
     {"simple_shear", fit::LabTest::simple_shear, "one face moved along the other at a constant distance"},
     {"torsion", fit::LabTest::torsion, "a cylinder twisted at a constant length: torque over angle"},
     {"oscillation", fit::LabTest::oscillation, "small shear to and fro: storage and loss modulus over frequency"},
-    {"indentation", fit::LabTest::indentation,
-     "an indenter pressed into a layer: force over depth, and as it is held"}};
+    {"indentation", fit::LabTest::indentation, "an indenter pressed into a layer: force over depth, and as it is held"},
+    {"heat", fit::LabTest::heat,
+     "a body that a scene with [heat] cools or heats: a column of its temperature.csv or heat.csv over time"}};
 
 }  // namespace glisson
 
@@ -73,7 +75,16 @@ inline constexpr Word<fit::Deforming> kWords<fit::Deforming>[] = {
 namespace glisson::fit {
 
 /// The measured quantity of a test; the forward model gives the same.
-enum class Measured { nominal, cauchy, second_piola, torque, axial, strain, storage, loss };
+enum class Measured { nominal, cauchy, second_piola, torque, axial, strain, storage, loss, heat };
+
+/// What of a scene of heat is measured.
+struct HeatReading {
+  std::string column;   ///< of its temperature.csv or heat.csv
+  std::string over;     ///< a column that it is divided by; empty: none
+  std::string variant;  ///< of the scene; empty: that of the fit
+
+  bool operator==(const HeatReading&) const = default;
+};
 
 /// Meaning of the numbers of a curve. By default a press or an insertion: force over displacement.
 struct Measurement {
@@ -86,6 +97,7 @@ struct Measurement {
   std::string unit = "N";              ///< of Curve::force
   std::string drive_unit = "m";        ///< of Curve::displacement
   std::optional<Indenter> indenter{};  ///< of an indentation
+  std::optional<HeatReading> heat{};   ///< of a test of heat
 
   bool operator==(const Measurement&) const = default;
   /// 1 where a positive displacement extends the specimen, −1 where it compresses it.
@@ -127,6 +139,7 @@ struct Parameter {
 ///   creep                                      nominal stress × area [N]                strain × height [m]
 ///   indentation                                depth [m]                                force [N]; of a creep the reverse
 ///   oscillation                                frequency [Hz], `time` is the row        storage or loss modulus [Pa]
+///   heat                                       time [s]                                 the column, in its unit
 struct Curve {
   std::string name;                  ///< unique among the curves of a fit, e.g. the file's stem
   std::string group;                 ///< repetitions of one test share it, e.g. "2 mm/s"
@@ -136,10 +149,11 @@ struct Curve {
   std::vector<double> force;         ///< on the tool, along its motion [N]
   /// History of the specimen before the first instant, as the cycles before the fitted one: ascending, before time[0] [s, m].
   std::vector<double> past_time, past_displacement;
-  double velocity = 0.0;  ///< mean speed while loading [m/s]
-  double noise = 0.0;     ///< standard deviation of the force about a smooth curve [N]; 0: not known
-  double weight = 1.0;    ///< factor on the residuals, ≥ 0
-  bool held_out = false;  ///< kept from the fit, to test it
+  double velocity = 0.0;     ///< mean speed while loading [m/s]
+  double noise = 0.0;        ///< standard deviation of the force about a smooth curve [N]; 0: not known
+  bool noise_given = false;  ///< whoever measured says it; else it was estimated
+  double weight = 1.0;       ///< factor on the residuals, ≥ 0
+  bool held_out = false;     ///< kept from the fit, to test it
   Measurement measurement{};
 
   std::size_t size() const { return time.size(); }
@@ -284,11 +298,12 @@ struct FitResult {
   std::vector<LawResult> laws;
   std::vector<DiscoveredLaw> discovered;  ///< all that were looked at; within a size the best first
   std::vector<DesignResult> designs;
-  std::vector<StabilityResult> stability;   ///< of the law at once; empty where its measure depends on the mesh
-  std::vector<std::string> conclusions;     ///< sentences
-  std::string tissue;                       ///< text of tissue.toml, which a scene reads with `tissue.file`
-  std::string result_file = "tissue.toml";  ///< "membranes.toml" of a fit of [insertion], whose text is part of a scene
-  std::optional<double> area, height;       ///< of the specimen [m²], [m]
+  std::vector<StabilityResult> stability;  ///< of the law at once; empty where its measure depends on the mesh
+  std::vector<std::string> conclusions;    ///< sentences
+  std::string tissue;                      ///< text of tissue.toml, which a scene reads with `tissue.file`
+  /// "membranes.toml" of a fit of [insertion], whose text is part of a scene; "keys.toml" of a fit of heat, the [set] of a FIT.toml.
+  std::string result_file = "tissue.toml";
+  std::optional<double> area, height;  ///< of the specimen [m²], [m]
 
   /// Whether each parameter stands at a bound or is not identifiable: the curves tell nothing of this law.
   bool identifies_nothing() const;

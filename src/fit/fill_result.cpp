@@ -55,10 +55,27 @@ void conclude_on_tests(const FitResult& result, std::vector<std::string>& senten
                                    [](const CurveResult& c) { return c.curve.measurement.is_press(); });
   if (result.tests.size() < 2 || presses) return;
   std::string text = "R² is";
+  const auto known = [](const TestResult& t) { return std::isfinite(t.r2); };
+  if (std::none_of(result.tests.begin(), result.tests.end(), known)) return;
   for (std::size_t t = 0; t < result.tests.size(); ++t)
-    text += (t == 0 ? " " : ", ") + rounded(result.tests[t].r2) + " in " + result.tests[t].name +
-            (result.tests[t].held_out ? " (held out)" : "");
+    if (known(result.tests[t]))
+      text += (text.back() == 's' ? " " : ", ") + rounded(result.tests[t].r2) + " in " + result.tests[t].name +
+              (result.tests[t].held_out ? " (held out)" : "");
   sentences.push_back(text + ".");
+}
+
+/// What single values, such as the width of an isotherm, came to.
+void conclude_on_values(const FitResult& result, std::vector<std::string>& sentences) {
+  for (const CurveResult& c : result.curves) {
+    if (c.curve.size() != 1 || c.fitted.size() != 1) continue;
+    const std::string unit = c.curve.measurement.unit == "-" ? "" : " " + c.curve.measurement.unit;
+    const double measured = c.curve.force[0], part = measured != 0.0 ? c.fitted[0] / measured - 1.0 : 0.0;
+    std::string text = c.curve.name + " is " + rounded(c.fitted[0], 4) + unit + " where " + rounded(measured, 4) +
+                       unit + " was measured";
+    if (unit != " °C" && measured != 0.0)
+      text += std::string(" (") + (part < 0.0 ? "" : "+") + rounded(100.0 * part, 2) + " %)";
+    sentences.push_back(text + (c.curve.held_out ? ", held out." : "."));
+  }
 }
 
 /// The error of held-out curves up to a displacement, beside their spread, over all of them as one test.
@@ -260,6 +277,7 @@ void fill_curves(const LawSearch& search, const FitSpec& spec, const FitCurves& 
   result.conclusions.insert(result.conclusions.end(), curves.skipped.begin(), curves.skipped.end());
   conclude_on_curves(all, result, result.conclusions);
   conclude_on_tests(result, result.conclusions);
+  conclude_on_values(result, result.conclusions);
   if (spec.proof.displacement) {
     const std::string text = limited_errors(curves, predictions, *spec.proof.displacement);
     if (!text.empty()) result.conclusions.push_back(text);

@@ -57,6 +57,9 @@ std::vector<LawSpec> laws_of(const FitSpec& spec, const FitRun& options, const F
   if (!spec.parameters.empty() && options.laws.empty()) laws.push_back({own_law_name(spec), {}, spec.parameters});
   laws.insert(laws.end(), spec.laws.begin(), spec.laws.end());
   const SpecimenSize size = size_of(spec);
+  if (!options.laws.empty() && spec.is_heat())
+    throw std::invalid_argument("--laws names laws of tissues that deform; compare scenes of heat by [[law]] of " +
+                                spec.file.string());
   for (const std::string& name : options.laws) {
     const double modulus = spec.specimen ? initial_modulus(curves.chosen(curves.indices(false)),
                                                            size.area.value_or(1.0), size.height.value_or(1.0))
@@ -94,6 +97,7 @@ class Run {
   bool search_all(const std::vector<LawSpec>& laws);
   bool search_one(const LawSpec& law);
   std::size_t choose(FitResult& result) const;
+  void fill_file(const LawSearch& search, double radius, FitResult& result) const;
   void count_runs(FitResult& result) const;
 
   const FitSpec& spec_;
@@ -254,6 +258,20 @@ void Run::count_runs(FitResult& result) const {
   result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
 }
 
+/// The text of the file that scenes or fits go on with; of a tissue where its law is stable, too.
+void Run::fill_file(const LawSearch& search, double radius, FitResult& result) const {
+  if (spec_.is_heat()) {
+    result.tissue = keys_of_fit(search, result, spec_);
+    result.result_file = "keys.toml";
+    return;
+  }
+  result.tissue = tissue_of_fit(search, result, spec_);
+  const DataRange range = data_range(result.curves, result.height, radius);
+  result.stability = law_stability(fitted_tissue(search), range);
+  result.conclusions.push_back(stability_sentence(result.stability, range));
+  std::erase(result.conclusions, std::string());
+}
+
 FitResult Run::to_end() {
   require_something_free(spec_, options_);
   const SpecimenSize size = size_of(spec_);
@@ -278,11 +296,7 @@ FitResult Run::to_end() {
   LawSearch& search = *searches_[chosen];
   if (!search.found().basins.empty() || all) {
     fill_proof(search, spec_, curves_, options_, result);
-    result.tissue = tissue_of_fit(search, result, spec_);
-    const DataRange range = data_range(result.curves, result.height, size.radius.value_or(0.0));
-    result.stability = law_stability(fitted_tissue(search), range);
-    result.conclusions.push_back(stability_sentence(result.stability, range));
-    std::erase(result.conclusions, std::string());
+    fill_file(search, size.radius.value_or(0.0), result);
   } else {
     result.starts_planned = spec_.search.starts;
   }

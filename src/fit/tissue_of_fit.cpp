@@ -37,6 +37,7 @@ std::string other_keys(const LawSearch& search, const std::vector<double>& value
 }  // namespace
 
 std::string own_law_name(const FitSpec& spec) {
+  if (spec.is_heat()) return "heat";
   const Tissue tissue = own_tissue(spec);
   const auto kind = [](const auto& law) { return std::string(law.kName); };
   std::string name = tissue.hyperelastic ? std::visit(kind, *tissue.hyperelastic) : std::visit(kind, tissue.law);
@@ -89,8 +90,10 @@ std::string volume_keys(const LawSearch& search, const FitSpec& spec, const scen
 
 }  // namespace
 
-std::string tissue_of_fit(const LawSearch& search, const FitResult& result, const FitSpec& spec) {
-  const OfScene numbers = numbers_of_scene(search);
+namespace {
+
+/// What was fitted, how well and with which intervals, as comments.
+std::string heading_of(const FitResult& result, const FitSpec& spec) {
   std::string text = "# Fitted by `glisson fit " + spec.file.filename().string() + "`: " + spec.title + "\n";
   text +=
       "# Law " + result.law + "; fitted curves matched to " + measured_text(result.rms_fit, result.unit, 4) + " rms";
@@ -100,7 +103,24 @@ std::string tissue_of_fit(const LawSearch& search, const FitResult& result, cons
     text += "#   " + p.parameter.name + " = " + brief(p.value) + (p.parameter.unit.empty() ? "" : " ") +
             p.parameter.unit + ", " + interval_text(p) + ", " + p.verdict + "\n";
   }
-  text += other_keys(search, search.values()) + "\n";
+  return text;
+}
+
+}  // namespace
+
+std::string keys_of_fit(const LawSearch& search, const FitResult& result, const FitSpec& spec) {
+  const OfScene numbers = numbers_of_scene(search);
+  std::string text = heading_of(result, spec) + "# For [set] of a FIT.toml, or `glisson run " +
+                     spec.scene.filename().string() + " --set KEY=VALUE`.\n";
+  for (const Override& o : search.scene().overrides) text += "\"" + o.key + "\" = " + o.value + "\n";
+  for (std::size_t k = 0; k < numbers.keys.size(); ++k)
+    text += "\"" + numbers.keys[k] + "\" = " + scene::show(numbers.values[k]) + "\n";
+  return text;
+}
+
+std::string tissue_of_fit(const LawSearch& search, const FitResult& result, const FitSpec& spec) {
+  const OfScene numbers = numbers_of_scene(search);
+  const std::string text = heading_of(result, spec) + other_keys(search, search.values()) + "\n";
   const scene::Node tissue = experiment(search.scene(), numbers.keys).tissue_tree(numbers.values);
   return text + scene::tissue_file_text(tissue) + volume_keys(search, spec, tissue);
 }

@@ -17,6 +17,9 @@ double own_modulus(const FitSpec& spec);
 /// The tissue with the fitted numbers.
 Tissue fitted_tissue(const LawSearch& search);
 
+/// keys.toml of a fit of heat: keys of the scene with the fitted numbers, and the same comments.
+std::string keys_of_fit(const LawSearch& search, const FitResult& result, const FitSpec& spec);
+
 /// tissue.toml: [tissue] with the fitted numbers, and comments that say what they were fitted to and how sure they are.
 std::string tissue_of_fit(const LawSearch& search, const FitResult& result, const FitSpec& spec);
 

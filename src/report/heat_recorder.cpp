@@ -77,6 +77,13 @@ void HeatRecorder::on_sample(const HeatSample& sample) {
 }
 
 void HeatRecorder::on_frame(const HeatSimulation& s) {
+  SurfaceState state{.time = s.time(), .mesh = s.mesh()};
+  state.fields["temperature"].assign(s.temperature().begin(), s.temperature().end());
+  if (!surface_) {
+    surface_ = std::make_unique<SurfaceRecorder>(variant_, state, options_.surface_bytes);
+    surface_->set_heat(*variant_.heat);
+  }
+  surface_->add(state);
   guarded_([&] {
     const std::filesystem::path file = std::filesystem::path("frames") / fmt::format("frame_{:04}.vtu", frames_.size());
     TetMesh mesh = s.mesh();
@@ -160,7 +167,7 @@ nlohmann::json HeatRecorder::json() const {
           {"probes", no_table},
           {"events", none},
           {"law_curves", none},
-          {"surface", nullptr}};
+          {"surface", surface_ ? surface_->json() : nlohmann::json()}};
 }
 
 nlohmann::json HeatRecorder::charts(bool one_variant) const {

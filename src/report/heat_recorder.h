@@ -16,6 +16,7 @@
 
 #include "glisson/io.h"
 #include "glisson/scene/heat_run.h"
+#include "report/surface_recorder.h"
 #include "report/variant_recorder.h"
 
 namespace glisson {
@@ -57,6 +58,7 @@ class HeatRecorder : public HeatObserver {
   std::size_t temperatures_ = 0;      ///< how many are of temperature.csv
   std::vector<std::vector<double>> data_;
   std::unique_ptr<LineFile> temperature_file_, heat_file_;
+  std::unique_ptr<SurfaceRecorder> surface_;  ///< from the first frame on
   std::vector<std::pair<double, std::filesystem::path>> frames_;
   HeatRunSummary summary_;
 };

@@ -9,6 +9,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -16,16 +18,29 @@
 #include <string>
 #include <vector>
 
+#include "glisson/scene/heat_spec.h"
 #include "glisson/scene/scene.h"
 #include "report/body_surface.h"
 
 namespace glisson {
 
+/// A body at a time: of the mechanics, or of heat alone. What a span or a mesh is of has to outlive it.
+struct SurfaceState {
+  double time = 0.0;  ///< [s]
+  const TetMesh& mesh;
+  std::span<const Vec3d> displacement{};                ///< of every vertex [m]; empty: the body rests
+  std::function<bool(std::uint32_t)> is_removed{};      ///< whether a tet is gone; none: all are there
+  std::vector<double> intensity{};                      ///< equivalent shear strain at every vertex; empty: none
+  std::map<std::string, std::vector<double>> fields{};  ///< others at every vertex, by their names on the page
+};
+/// @param fields  of the same state
+SurfaceState surface_state(const Simulation& simulation, const TetFields& fields);
+
 /// Records frames of the surface as SurfaceData of web/src/report_data.ts.
 class SurfaceRecorder {
  public:
   /// @param max_bytes  what the frames may take in the page; beyond it every 2nd, 3rd, … frame is kept
-  SurfaceRecorder(const Variant& variant, const Simulation& simulation, std::size_t max_bytes);
+  SurfaceRecorder(const Variant& variant, const SurfaceState& first, std::size_t max_bytes);
 
   /// Instruments that frames show, too.
   void set_instruments(std::vector<std::shared_ptr<Instrument>> instruments);
@@ -33,23 +48,26 @@ class SurfaceRecorder {
   void set_container(const Container& container, const TetMesh& mesh);
   /// Capsules whose tears frames show.
   void set_capsules(std::vector<std::shared_ptr<Capsule>> capsules) { capsules_ = std::move(capsules); }
-  /// Takes a frame. @param fields  of the same state
-  void add(const Simulation& simulation, const TetFields& fields);
+  /// Probes of heat, at rest, drawn as needles, and the isotherms that are drawn within the body.
+  void set_heat(const HeatSpec& heat);
+  /// Takes a frame.
+  void add(const SurfaceState& state);
   /// Largest equivalent shear strain s of the surface so far [-].
   double intensity_max() const { return intensity_max_; }
   /// The SurfaceData, the last frame always with it.
   nlohmann::json json() const;
 
  private:
-  void find_surface(const Simulation& simulation);
+  void find_surface(const SurfaceState& state);
   void find_regions(const BodySurface& surface, const TetMesh& mesh);
   std::vector<std::uint32_t> region_triangles(const BodySurface& surface, const std::string& name, const TetMesh& mesh);
   std::uint32_t number_of(std::uint32_t vertex, const TetMesh& mesh);
-  void find_new_surface(const Simulation& simulation);
-  void find_inside(const Simulation& simulation);
-  nlohmann::json frame(const Simulation& simulation, const TetFields& fields);
-  nlohmann::json other_fields(const Simulation& simulation, const TetFields& fields) const;
-  std::vector<double> at_vertices(const Simulation& simulation, std::span<const double> of_tets) const;
+  void find_new_surface(const SurfaceState& state);
+  void find_inside(const SurfaceState& state);
+  nlohmann::json frame(const SurfaceState& state);
+  void add_motion(nlohmann::json& json, const SurfaceState& state) const;
+  void add_intensity(nlohmann::json& json, const SurfaceState& state);
+  std::vector<double> own(const std::vector<double>& at_vertices) const;
 
   Variant variant_;
   std::vector<std::uint32_t> vertices_;   // mesh vertex of each surface vertex
@@ -73,6 +91,7 @@ class SurfaceRecorder {
   std::vector<std::shared_ptr<Capsule>> capsules_;
   std::vector<std::shared_ptr<Instrument>> instruments_;
   nlohmann::json head_;
+  nlohmann::json probes_ = nlohmann::json::array();  // places of those of heat
   nlohmann::json frames_ = nlohmann::json::array();
   std::optional<nlohmann::json> last_;  // the newest frame, where the stride passed over it
   std::size_t stride_ = 1, seen_ = 0;

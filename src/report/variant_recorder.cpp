@@ -20,7 +20,8 @@ VariantRecorder::~VariantRecorder() = default;
 
 void VariantRecorder::on_start(const Variant&, const Simulation& simulation) {
   advice_ = advise_at_rest(variant_, simulation);
-  surface_ = std::make_unique<SurfaceRecorder>(variant_, simulation, options_.surface_bytes);
+  surface_ = std::make_unique<SurfaceRecorder>(variant_, surface_state(simulation, simulation.tet_fields()),
+                                               options_.surface_bytes);
   guarded_([&] {
     make_folder(options_.folder);
     if (!variant_.instruments.empty()) {
@@ -58,6 +59,7 @@ void VariantRecorder::on_built(const BuiltVariant& built) {
     heat_->on_start(variant_, coupling_->heat());
     heat_->on_sample(coupling_->heat().read());
     if (frames_) frames_->set_heat(coupling_, variant_.heat->options.isotherms);
+    surface_->set_heat(*variant_.heat);
   }
   guarded_([&] {
     files_.emplace_back(options_.folder / "forces.csv");
@@ -110,7 +112,12 @@ void VariantRecorder::record_probes(const Sample& sample) {
 
 void VariantRecorder::on_frame(const Simulation& simulation) {
   const TetFields fields = simulation.tet_fields();
-  surface_->add(simulation, fields);
+  SurfaceState state = surface_state(simulation, fields);
+  if (coupling_) {
+    const std::span<const double> t = coupling_->heat().simulation.temperature();
+    state.fields["temperature"].assign(t.begin(), t.end());
+  }
+  surface_->add(state);
   guarded_([&] {
     if (frames_) frames_->add(simulation, fields);
     if (view_) view_->add(simulation.time());

@@ -142,13 +142,14 @@ std::vector<T> numbers_in(const std::string& text) {
 TEST(BodySurface, ReportKeepsInnerRegionsClosedThroughACut) {
   view::LiveBody body(nodule_block(), {});
   Simulation& simulation = body.built().simulation;
-  SurfaceRecorder recorder(body.variant(), simulation, 1'000'000);
-  recorder.add(simulation, simulation.tet_fields());
+  const auto state = [&] { return surface_state(simulation, simulation.tet_fields()); };
+  SurfaceRecorder recorder(body.variant(), state(), 1'000'000);
+  recorder.add(state());
   body.cut()->begin({{-0.1, -0.1, 0.0162}, {-0.1, 0.1, 0.0162}});
   body.cut()->draw({{0.1, -0.1, 0.0162}, {0.1, 0.1, 0.0162}});
   while (body.cut()->waits()) body.work_on_cut(view::HandCut::Clock::now());
-  recorder.add(simulation, simulation.tet_fields());
-  recorder.add(simulation, simulation.tet_fields());
+  recorder.add(state());
+  recorder.add(state());
   const nlohmann::json surface = recorder.json();
   EXPECT_FALSE(surface["frames"][0].contains("regions"));
   EXPECT_FALSE(surface["frames"][2].contains("regions")) << "nothing has changed since";

@@ -30,6 +30,21 @@ std::string heat_scene(const std::string& more = {}, int cells = 6, double durat
          more;
 }
 
+// Without a sensor temperature.csv has the mean of the body, whose heat content it follows while nothing freezes: ρ c V (T − 37).
+TEST_F(HeatRun, WritesTheMeanWhereThereIsNoSensor) {
+  const std::string scene =
+      "[mesh]\nkind = \"box\"\ncells = [4, 4, 4]\nsize_m = [0.04, 0.04, 0.04]\n[heat]\nduration_s = 60\n"
+      "sample_every_s = 10\n[[heat.tissue]]\npreset = \"soft_tissue\"\ndensity_kg_m3 = 1000\nspecific_heat_J_kg_K = "
+      "3600\nperfusion_per_s = 0\n"
+      "metabolic_heat_W_m3 = 0\n[[heat.boundary]]\nset = \"x_min\"\nflux_W_m2 = -500\n";
+  ASSERT_THAT(run({"run", write("s.toml", scene), "--out", "o", "--quiet"}), Exits(0));
+  auto t = read_csv(folder_ / "o/main/temperature.csv"), h = read_csv(folder_ / "o/main/heat.csv");
+  ASSERT_EQ(t["mean_C"].size(), 7U);
+  const double mean = 37.0 + h["stored_J"].back() / (1000.0 * 3600.0 * 6.4e-5);
+  EXPECT_LT(mean, 36.9);
+  EXPECT_NEAR(t["mean_C"].back(), mean, 1e-9);
+}
+
 // The files, their columns, and that they agree with each other; checks as numbers, in the summary and in words in the report.
 TEST_F(HeatRun, LeavesTablesFramesAndChecks) {
   const std::string checks =
@@ -63,6 +78,15 @@ TEST_F(HeatRun, LeavesTablesFramesAndChecks) {
   EXPECT_EQ(scene["checks"].size(), 3U);
   EXPECT_EQ(scene["charts"][0]["title"], "Temperatures");
   EXPECT_EQ(scene["charts"][0]["lines"][0]["label"], "near");
+  const nlohmann::json& surface = scene["variants"][0]["surface"];
+  EXPECT_EQ(surface["isotherms"], nlohmann::json::parse(R"([{"name": "cold", "temperature_C": -20.0}])"));
+  ASSERT_EQ(surface["instruments"].size(), 1U) << "the probe is drawn as a needle";
+  EXPECT_EQ(surface["instruments"][0]["name"], "needle");
+  EXPECT_FALSE(surface["tets"].get<std::string>().empty()) << "isotherms are surfaces within the tets";
+  ASSERT_EQ(surface["frames"].size(), 3U);
+  EXPECT_EQ(surface["frames"][0]["fields"]["temperature"]["high"], 37.0);
+  EXPECT_NEAR(surface["frames"][2]["fields"]["temperature"]["low"].get<double>(), h["lowest_C"].back(), 1e-9);
+  EXPECT_EQ(surface["frames"][2]["displacement"], "") << "it rests";
   const auto frames = read_pvd(folder_ / "o/main/frames.pvd");
   ASSERT_EQ(frames.size(), 3U);
   EXPECT_EQ(frames.back().first, 60.0);

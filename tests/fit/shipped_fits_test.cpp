@@ -14,9 +14,10 @@ namespace fs = std::filesystem;
 const fs::path kFits = test::shipped("scenes/fit");
 
 TEST(ShippedFits, CanBeRead) {
-  for (const char* name : {"phantom_mean.toml", "phantom_ef10_100t.toml", "phantom_ef10_75t.toml",
-                           "phantom_friction.toml", "liver_velocity.toml", "bovine_needle.toml",
-                           "bovine_membranes.toml", "brain_cortex.toml", "muscle_hold.toml", "indentation.toml"}) {
+  for (const char* name :
+       {"phantom_mean.toml", "phantom_ef10_100t.toml", "phantom_ef10_75t.toml", "phantom_friction.toml",
+        "liver_velocity.toml", "bovine_needle.toml", "bovine_membranes.toml", "brain_cortex.toml", "muscle_hold.toml",
+        "indentation.toml", "agar_probe.toml"}) {
     const FitSpec fit = load_fit(kFits / name);
     EXPECT_FALSE(fit.title.empty()) << name;
     EXPECT_FALSE(fit.description.empty()) << name;

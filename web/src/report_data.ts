@@ -80,7 +80,14 @@ export interface SurfaceData {
   tissue?: string; // name of the tissue of most of the body
   regions?: RegionSurface[]; // of all other regions; their inner vertices come after those of the outer surface
   tets?: Base64; // u32, four per tet, of the whole body, whose other vertices come last; none: surfaces alone
+  isotherms?: IsothermData[]; // of the field temperature, to be drawn within the body
   frames: FrameData[]; // in time order, may be empty
+}
+
+/** A surface of one temperature. */
+export interface IsothermData {
+  name: string; // of the scene's isotherm; may be empty
+  temperature_C: number;
 }
 
 /** The closed surface of a region of the body at first. */
@@ -126,10 +133,10 @@ export interface FieldData {
 export interface FrameData {
   time_s: number;
   displacement_scale_m: number; // displacement = i16 / 32767 × this
-  displacement: Base64; // i16, xyz per vertex
+  displacement: Base64; // i16, xyz per vertex; empty: the body rests
   intensity_max: number; // equivalent shear strain s = u8 / 255 × this
-  intensity: Base64; // u8 per vertex (mean of the adjacent tets)
-  fields?: Record<string, FieldData>; // besides the intensity: pressure, von_mises, contact_pressure
+  intensity: Base64; // u8 per vertex (mean of the adjacent tets); empty: there is none
+  fields?: Record<string, FieldData>; // besides the intensity: pressure, von_mises, contact_pressure, temperature [°C]
   instruments: InstrumentPlace[]; // one for each of the surface's
   triangles?: Base64; // where the surface has become another, from this frame on; vertices that come later are not in
   // earlier frames

@@ -61,6 +61,7 @@ class BuiltHeat {
   };
   void add_sources(const Variant& variant);
   void add_sensors(const Variant& variant);
+  void add_means(const Variant& variant);
   void add_volumes(const Variant& variant);
   void read_isotherms(std::span<const double> temperature, std::vector<double>& row) const;
 

@@ -148,7 +148,7 @@ struct SimulationOptions {
   double gravity_ramp = 0.0;      ///< gravity grows linearly from 0 over this time [s]
   bool enforce_stability = true;  ///< false: any step is accepted, for studies of the instability itself
   /// Threads for the element forces; 0: chosen by the size of the body. The result is the same bytes on any
-  /// number of threads. In double precision always one.
+  /// number of threads. Explicit steps in double precision always take one.
   int threads = 0;
   /// Whether energies() is computed. It makes a step up to half as long again; forces of constraints are available
   /// either way.

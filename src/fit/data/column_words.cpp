@@ -78,6 +78,9 @@ const std::vector<MeaningWords>& all_words() {
        {"storage", "storage modulus", "speichermodul", "module de conservation", "module élastique",
         "module de stockage"},
        {"g'", "g′", "e'"}},
+      {R::temperature,
+       {"temperature", "temp", "thermocouple", "temperatur", "thermoelement", "température", "temperatura"},
+       {}},
       {R::loss_modulus,
        {"loss modulus", "loss mod", "verlustmodul", "module de perte", "module visqueux"},
        {"g''", "g″", "g\"", "e''"}}};

@@ -23,7 +23,8 @@ enum class ColumnMeaning {
   torque,
   axial_force,
   storage_modulus,
-  loss_modulus
+  loss_modulus,
+  temperature
 };
 
 /// Whether the name of a column, its unit taken off, begins with a word for its meaning: "Compressive load", "Angular Frequency",

@@ -29,6 +29,7 @@ struct ColumnsSpec {
   ColumnSpec displacement, strain, stretch, true_strain, green_strain, shear, angle, frequency;  ///< what is driven
   ColumnSpec force, stress, cauchy_stress, second_piola_stress, torque, axial_force;             ///< what answers
   ColumnSpec storage_modulus, loss_modulus;
+  ColumnSpec value;  ///< of a test of heat
 };
 
 enum class ContactKind { none, detect, given, automatic };
@@ -96,7 +97,10 @@ struct DataSpec {
   std::optional<Deforming>
       deforming;            ///< of a test whose name does not say it; none: the file's stretch, else compression
   double prestretch = 1.0;  ///< of an oscillation
-  std::optional<Indenter> indenter;  ///< of an indentation
+  std::optional<Indenter> indenter;   ///< of an indentation
+  HeatReading heat;                   ///< of a test of heat
+  std::vector<double> times, values;  ///< of a test of heat, in place of files [s], [unit of the column]
+  std::optional<double> deviation;    ///< standard deviation of a value of a test of heat [unit of the column]
   bool held_out = false;
   double weight = 1.0;
   TextSpec text;
@@ -112,6 +116,7 @@ struct DataSpec {
   ResampleSpec resample;
   std::string origin;  ///< where FIT.toml says it, for messages
 
+  bool is_heat() const { return test == LabTest::heat; }
   bool indents() const { return test == LabTest::indentation || deforming == Deforming::indentation; }
 };
 

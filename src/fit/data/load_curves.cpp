@@ -4,6 +4,7 @@
 #include <functional>
 #include <tuple>
 
+#include "fit/data/test_columns.h"
 #include "glisson/scene/scene.h"
 
 namespace glisson::fit {
@@ -27,14 +28,31 @@ RawTest load_raw(const std::filesystem::path& path, const DataSpec& spec, const 
   const CurveFile file = read_curve_file(path, spec.text);
   scene::Problems problems(path.string());
   RawTest test = raw_test(file, spec, size, problems);
-  if (problems.count() == 0) check_units(test, spec, size, problems);
+  if (problems.count() == 0 && !spec.is_heat()) check_units(test, spec, size, problems);
   problems.throw_if_any();
   return test;
 }
 
+/// Values that FIT.toml itself says.
+PreparedCurve curve_of_values(const DataSpec& spec) {
+  PreparedCurve made;
+  Curve& c = made.curve;
+  c.name = made.account.name = name_of(spec.heat);
+  c.group = spec.group, c.batch = spec.batch, c.weight = spec.weight, c.held_out = spec.held_out;
+  c.time = c.displacement = spec.times, c.force = spec.values;
+  c.noise = spec.deviation.value_or(0.0), c.noise_given = spec.deviation.has_value();
+  Measurement& m = c.measurement;
+  m.test = spec.test, m.measured = Measured::heat, m.heat = spec.heat;
+  m.unit = unit_of(spec.heat).unit, m.drive_unit = "s";
+  made.account.rows_read = made.account.points = spec.values.size();
+  made.account.contact_how = "as recorded";
+  made.account.unit = m.unit, made.account.drive_unit = m.drive_unit, made.account.row_noise = c.noise;
+  return made;
+}
+
 /// Names that several files share get their folders.
 void make_unique(std::vector<PreparedCurve>& curves, const DataSpec& spec) {
-  for (std::size_t i = 0; i < curves.size(); ++i) {
+  for (std::size_t i = 0; i < spec.files.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       if (curves[j].account.name == curves[i].account.name)
         curves[i].curve.name = spec.files[i].generic_string() + " (" + std::to_string(i + 1) + ")";
@@ -70,7 +88,7 @@ bool of_one_test(const DataSpec& a, const DataSpec& b) {
     const ColumnsSpec& c = d.columns;
     return std::tuple(d.test, d.deforming, d.prestretch, d.indenter, d.speed, d.size.area, d.size.height,
                       c.axial_force.given, c.loss_modulus.given, d.contact.kind, d.contact.at, d.contact.threshold,
-                      d.contact.zero_force);
+                      d.contact.zero_force, d.heat);
   };
   return what(a) == what(b);
 }
@@ -82,7 +100,7 @@ TestFiles::TestFiles(std::span<const DataSpec> tables, const SpecimenSize& commo
     if (table.size.height) t.size.height = table.size.height;
     for (const auto& file : table.files)
       collect(faults_, [&] { t.tests.push_back(load_raw(placed(file, base), t.spec, t.size)); });
-    if (!faults_.empty() || table.unlikely) continue;
+    if (!faults_.empty() || table.unlikely || table.is_heat()) continue;
     for (const std::string& fault : repetition_faults(t.tests))
       faults_.append(faults_.empty() ? "" : "\n").append(fault);
   }
@@ -98,6 +116,7 @@ std::vector<std::vector<PreparedCurve>> TestFiles::curves(std::optional<ContactK
       if (sloped) spec.contact.sloped = true;
       if (preload > 0.0) spec.contact.preload = preload;
       std::vector<PreparedCurve>& curves = all.emplace_back();
+      if (!spec.values.empty()) curves.push_back(curve_of_values(spec));
       for (const RawTest& test : t.tests) {
         collect(faults, [&] {
           scene::Problems problems(test.file.string());

@@ -101,7 +101,7 @@ class Preparation {
     const ContactSpec& contact = spec_.contact;
     if (contact.kind == ContactKind::none) {
       account_.contact_how = "as recorded";
-      start_at(0.0, rows_.time.front());
+      start_at(0.0, spec_.is_heat() ? 0.0 : rows_.time.front());  // a probe's time is that of the scene
       return true;
     }
     Contact found{.at = contact.at};
@@ -202,7 +202,8 @@ class Preparation {
     rows_ = points.rows;
     if (!enough("the resampled curve", "raise resample.points")) return std::nullopt;
     account_.points = rows_.size();
-    return PreparedCurve{curve(velocity, account_.row_noise / std::sqrt(points.rows_a_point)), account_};
+    const double row_noise = spec_.deviation.value_or(account_.row_noise);
+    return PreparedCurve{curve(velocity, row_noise / std::sqrt(points.rows_a_point)), account_};
   }
 
   /// Whether an indenter pushes all along. Adhesion is not in the model: of a pull-off the fit would make a softer tissue.
@@ -248,6 +249,7 @@ class Preparation {
     c.force = std::move(rows_.force);
     c.velocity = velocity;
     c.noise = noise;
+    c.noise_given = spec_.deviation.has_value();
     c.weight = spec_.weight;
     c.held_out = spec_.held_out;
     c.measurement = test_.measurement;
@@ -277,6 +279,9 @@ std::string slope_text(const CurveAccount& a) {
 }  // namespace
 
 std::string CurveAccount::text() const {
+  if (file.empty())
+    return name + ": " + std::to_string(points) + (points == 1 ? " value" : " values") + " of FIT.toml, ± " +
+           measured_text(row_noise, unit, 4);
   std::string t = name + ": " + std::to_string(rows_read) + " rows";
   if (rows_skipped > 0) t += ", " + std::to_string(rows_skipped) + " bad ones skipped";
   if (rows_merged > 0) t += ", " + std::to_string(rows_merged) + " of equal time averaged";

@@ -194,6 +194,7 @@ Deforming deforming_of(const DataSpec& spec, Drive drive, const std::vector<doub
     case LabTest::relaxation:
     case LabTest::creep:
     case LabTest::cyclic:
+    case LabTest::heat:
       break;
   }
   if (spec.deforming || drive != Drive::stretch || driven.empty())
@@ -317,6 +318,7 @@ void require_direction(const RawTest& test, const TestColumns& columns, double o
 /// From the numbers of the file to those of a curve.
 void convert(RawTest& test, const DataSpec& spec, const TestColumns& columns, const SpecimenSize& size,
              scene::Problems& problems) {
+  if (spec.is_heat()) return;
   Measurement& m = test.measurement;
   m.deforming = deforming_of(spec, columns.drive, test.displacement);
   const double outward = m.outward();
@@ -365,6 +367,7 @@ Measurement measurement_of(const DataSpec& spec, const TestColumns& columns, con
   if (spec.test == LabTest::torsion || spec.deforming == Deforming::torsion) m.unit = "N m", m.drive_unit = "rad";
   if (m.measured == Measured::axial) m.unit = "N";
   if (spec.test == LabTest::oscillation) m.unit = "Pa", m.drive_unit = "Hz";
+  if (spec.is_heat()) m.heat = spec.heat, m.unit = unit_of(spec.heat).unit, m.drive_unit = "s";
   return m;
 }
 

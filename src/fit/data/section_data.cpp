@@ -1,5 +1,8 @@
 #include "fit/data/section_data.h"
 
+#include <algorithm>
+#include <functional>
+
 #include "fit/data/test_columns.h"
 #include "fit/data/units.h"
 #include "scene/parse/section.h"
@@ -174,11 +177,41 @@ void require_columns(const DataSpec& x, const Node& table, const Place& place) {
                {"cauchy_stress", c.cauchy_stress.given},
                {"second_piola_stress", c.second_piola_stress.given},
                {"torque", c.torque.given || c.axial_force.given},
-               {"storage_modulus", c.storage_modulus.given || c.loss_modulus.given}});
+               {"storage_modulus", c.storage_modulus.given || c.loss_modulus.given},
+               {"value", c.value.given}});
+}
+
+/// What of a scene of heat was measured, in files or as values of FIT.toml.
+void require_heat(const DataSpec& x, const Node& table, const Place& place) {
+  const auto complain = [&](const char* key, const std::string& what) { place.complain(*table.find(key), key, what); };
+  if (!x.is_heat()) {
+    for (const char* key : {"of", "over", "variant", "times_s", "values", "deviation"}) {
+      if (table.find(key)) complain(key, "belongs to test = \"heat\"");
+    }
+    return;
+  }
+  for (const char* key : {"contact", "cycle", "area_mm2", "height_mm", "speed_mm_s"}) {
+    if (table.find(key)) complain(key, "does not belong to test = \"heat\"; remove it");
+  }
+  if (x.heat.column.empty())
+    place.complain("test = \"heat\" needs `of`, the column of temperature.csv or heat.csv that was measured");
+  if (x.times.size() != x.values.size())
+    complain(x.values.empty() ? "times_s" : "values", "there are " + std::to_string(x.times.size()) +
+                                                          " `times_s` and " + std::to_string(x.values.size()) +
+                                                          " `values`; give one value for each time");
+  if (std::adjacent_find(x.times.begin(), x.times.end(), std::greater_equal<>()) != x.times.end())
+    complain("times_s", "must ascend");
+  if (!x.values.empty() && !x.deviation)
+    complain("values", "needs `deviation`, the standard deviation of one value: values alone do not show it");
+  if (!x.files.empty() && !x.heat.column.empty() && !unit_of(x.heat).quantity)
+    complain("of",
+             "files are read of columns that end with _C, _m, _m2 or _m3, and of one column over another; give "
+             "`times_s` and `values` in place of files");
 }
 
 void finish_data(DataSpec& x, const Node& table, const Place& place) {
   x.origin = place.text();
+  require_heat(x, table, place);
   if (x.deforming && names_its_deformation(x.test))
     place.complain(
         *table.find("mode"), "mode",
@@ -202,7 +235,10 @@ void finish_data(DataSpec& x, const Node& table, const Place& place) {
   if (x.text.names_line > 0 && x.text.interval > 0)
     place.complain(*table.find("interval"), "interval",
                    "contradicts `text.names_line`, which says the table already; give one of the two");
-  if (x.files.empty()) place.complain(*table.find("files"), "files", "is empty; name at least one file");
+  if (x.files.empty() && x.values.empty() && table.find("files"))
+    place.complain(*table.find("files"), "files", "is empty; name at least one file");
+  else if (x.files.empty() && x.values.empty())
+    place.complain(x.is_heat() ? "needs `files`, or `times_s` and `values`" : "`files` is missing; name at least one");
   require_columns(x, table, place);
 }
 
@@ -274,6 +310,11 @@ const SectionSpec& columns_section() {
             "G′ of an oscillation, in Pa, kPa or MPa");
     s.table("loss_modulus", column_section(), &ColumnsSpec::loss_modulus,
             "G″ of an oscillation; with G′ it is a curve of its own");
+    s.table(
+        "value", column_section(), &ColumnsSpec::value,
+        "of a test of heat: temperature in °C, a length in mm, cm or m, an area in mm², cm² or m², a volume in mm³, "
+        "cm³, mL or m³, a share in - or %; by default the column that has the name of `of`, else the only one of "
+        "temperatures");
     s.finish([](ColumnsSpec& x, const Node& table, const Place& place) {
       require_unit(x.time, table, "time", Quantity::time, place);
       require_unit(x.displacement, table, "displacement", Quantity::length, place);
@@ -425,7 +466,8 @@ const SectionSpec& data_section() {
           "name of the batch that these specimens are of, e.g. \"A\"; with three or more batches fitted, the result "
           "says where the optimum of a further one is to be expected")
         .otherwise("not said");
-    s.key("files", &D::files, "files, relative to FIT.toml, or to --data DIR").must();
+    s.key("files", &D::files, "files, relative to FIT.toml, or to --data DIR")
+        .otherwise("`times_s` and `values` of a test of heat; else required");
     s.choice<LabTest>("test", &D::test, choices_of<LabTest>(), "what was done to the specimen");
     s.choice<std::optional<Deforming>>("mode", &D::deforming, optional_choices_of<Deforming>(),
                                        "how the specimen deforms in a test of relaxation, creep or cycles")
@@ -437,6 +479,29 @@ const SectionSpec& data_section() {
          "indenter", indenter_section(), [](D & d) -> auto& { return d.indenter.emplace(); },
          "the indenter of an indentation")
         .otherwise("none");
+    s.key(
+         "of", [](D & d) -> auto& { return d.heat.column; },
+         "of a test of heat: the column of the scene's temperature.csv or heat.csv that was measured, e.g. "
+         "\"aside_2_C\", \"cold_width_m\"")
+        .otherwise("none");
+    s.key(
+         "over", [](D & d) -> auto& { return d.heat.over; },
+         "of a test of heat: a column that it is divided by, e.g. \"ice_area_m2\"")
+        .otherwise("none");
+    s.key(
+         "variant", [](D & d) -> auto& { return d.heat.variant; }, "of a test of heat: variant of the scene")
+        .otherwise("that of the fit");
+    s.key("times_s", &D::times, "of a test of heat, in place of files: times of the scene, ascending")
+        .in("s")
+        .within(at_least(0))
+        .otherwise("`files`");
+    s.key("values", &D::values, "what was measured then, in the unit of the column: °C, m, m², m³, or a share of 1")
+        .otherwise("`files`");
+    s.key("deviation", &D::deviation,
+          "of a test of heat: standard deviation of one value, in the unit of the column; where all fitted curves have "
+          "one, and are weighed by it, intervals follow from it")
+        .within(above(0))
+        .otherwise("that of the rows about a smooth curve");
     s.choice<bool>("use", &D::held_out, {{"fit", false, "fitted"}, {"test", true, "held out, to test the fit"}},
                    "purpose");
     s.key("weight", &D::weight, "factor on the residuals").in("-").within(at_least(0));

@@ -1,5 +1,6 @@
 #include "fit/data/test_columns.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
@@ -42,6 +43,7 @@ const std::array<ColumnRole<Answer>, 8> kAnswers{
      {Answer::loss_modulus, "loss_modulus", &C::loss_modulus, Quantity::stress, ColumnMeaning::loss_modulus}}};
 
 bool takes(const DataSpec& spec, Drive drive) {
+  if (spec.is_heat()) return drive == Drive::time;
   const bool sheared = spec.test == LabTest::simple_shear || spec.deforming == Deforming::simple_shear;
   const bool twisted = spec.test == LabTest::torsion || spec.deforming == Deforming::torsion;
   switch (drive) {
@@ -59,6 +61,7 @@ bool takes(const DataSpec& spec, Drive drive) {
 }
 
 bool takes(const DataSpec& spec, Answer answer) {
+  if (spec.is_heat()) return answer == Answer::value;
   const bool twisted = spec.test == LabTest::torsion || spec.deforming == Deforming::torsion;
   switch (answer) {
     case Answer::storage_modulus:
@@ -174,7 +177,55 @@ std::optional<ChosenColumn> time_column(const CurveFile& file, const DataSpec& s
   return guess_column(file, Quantity::time, ColumnMeaning::time, "columns.time", problems);
 }
 
+/// The column that is named, else that of the scene's own name for it, else the one of temperatures.
+std::optional<ChosenColumn> value_column(const CurveFile& file, const DataSpec& spec, scene::Problems& problems) {
+  const HeatUnit unit = unit_of(spec.heat);
+  const Quantity quantity = unit.quantity.value_or(Quantity::strain);
+  const ColumnSpec& own = spec.columns.value;
+  if (own.given) return choose_column(file, own, quantity, "columns.value", problems);
+  const auto same = [&](const std::string& name) { return name == spec.heat.column; };
+  if (spec.heat.over.empty() && std::ranges::any_of(file.names, same)) {
+    const ColumnSpec named{.given = true, .name = spec.heat.column, .number = {}, .unit = {}, .origin = {}};
+    return choose_column(file, named, quantity, "columns.value", problems);
+  }
+  if (quantity == Quantity::temperature)
+    return guess_column(file, quantity, ColumnMeaning::temperature, "columns.value", problems);
+  problems.add({1, 1, {}}, "columns.value",
+               "the file has no column \"" + spec.heat.column +
+                   "\"; give columns.value = { name = … }, the column of " + name_of(spec.heat));
+  return {};
+}
+
+std::optional<TestColumns> heat_columns(const CurveFile& file, const DataSpec& spec, scene::Problems& problems) {
+  const ColumnSpec& own = spec.columns.time;
+  TestColumns found{.drive = Drive::time, .answer = Answer::value, .driven = {}, .answering = {}, .time = {}};
+  found.time = own.given ? choose_column(file, own, Quantity::time, "columns.time", problems)
+                         : guess_column(file, Quantity::time, ColumnMeaning::time, "columns.time", problems);
+  const auto value = value_column(file, spec, problems);
+  if (!found.time || !value) return {};
+  found.driven = *found.time, found.answering = *value;
+  return found;
+}
+
 }  // namespace
+
+HeatUnit unit_of(const HeatReading& reading) {
+  if (!reading.over.empty()) return {"-", Quantity::strain};
+  const std::string unit = reading.column.substr(reading.column.rfind('_') + 1);
+  if (unit == "C") return {"°C", Quantity::temperature};
+  if (unit == "m") return {"m", Quantity::length};
+  if (unit == "m2") return {"m²", Quantity::area};
+  if (unit == "m3") return {"m³", Quantity::volume};
+  for (const char* other : {"J", "W", "V"}) {
+    if (unit == other) return {unit, {}};
+  }
+  return {unit == "ohm" ? "Ω" : "-", {}};
+}
+
+std::string name_of(const HeatReading& reading) {
+  return reading.column + (reading.over.empty() ? "" : " / " + reading.over) +
+         (reading.variant.empty() ? "" : ", " + reading.variant);
+}
 
 bool names_its_deformation(LabTest test) {
   return test != LabTest::relaxation && test != LabTest::creep && test != LabTest::cyclic;
@@ -182,6 +233,7 @@ bool names_its_deformation(LabTest test) {
 
 std::optional<TestColumns> test_columns(const CurveFile& file, const DataSpec& spec, const SpecimenSize& size,
                                         scene::Problems& problems) {
+  if (spec.is_heat()) return heat_columns(file, spec, problems);
   const std::size_t before = problems.count();
   TestColumns found;
   found.time = time_column(file, spec, size, problems);
@@ -210,6 +262,7 @@ double driven_number(Drive drive, double value, const SpecimenSize& size, double
     case Drive::displacement:
     case Drive::angle:
     case Drive::frequency:
+    case Drive::time:
       return value;
   }
   return value;
@@ -235,6 +288,8 @@ Measured measured_by(Answer answer) {
       return Measured::storage;
     case Answer::loss_modulus:
       return Measured::loss;
+    case Answer::value:
+      return Measured::heat;
     default:
       return Measured::nominal;
   }

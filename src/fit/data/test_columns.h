@@ -5,17 +5,20 @@
 //   torsion                               angle                            ──▶  torque, axial_force or both
 //   indentation                           displacement (the depth)         ──▶  force
 //   oscillation                           frequency                        ──▶  storage_modulus or loss_modulus
+//   heat                                  time                             ──▶  value
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "fit/data/choose_column.h"
 #include "fit/data/data_spec.h"
+#include "fit/data/units.h"
 
 namespace glisson::fit {
 
-enum class Drive { displacement, strain, stretch, true_strain, green_strain, shear, angle, frequency };
+enum class Drive { displacement, strain, stretch, true_strain, green_strain, shear, angle, frequency, time };
 enum class Answer {
   force,
   stress,
@@ -24,7 +27,8 @@ enum class Answer {
   torque,
   axial_force,
   storage_modulus,
-  loss_modulus
+  loss_modulus,
+  value
 };
 
 /// Whether a test's name says how the specimen deforms; others hold, load or cycle one of these deformations.
@@ -52,6 +56,15 @@ double answering_number(Answer answer, double value, const SpecimenSize& size);
 
 /// What a test measures by an answering column.
 Measured measured_by(Answer answer);
+
+/// What a column of a scene of heat is in, by the end of its name.
+struct HeatUnit {
+  std::string unit;                  ///< "°C", "m", …; "-" of one column over another
+  std::optional<Quantity> quantity;  ///< none: files have the column's own unit
+};
+HeatUnit unit_of(const HeatReading& reading);
+/// "cold_area_m2 / ice_area_m2, two".
+std::string name_of(const HeatReading& reading);
 
 /// A test of two answering columns as one of each: G′ and G″, torque and axial force.
 std::vector<DataSpec> parted(const DataSpec& spec);

@@ -127,10 +127,16 @@ struct UnitTables {
   UnitTable frequency{{{"Hz", 1.0}, {"rad/s", 0.5 / std::numbers::pi}, {"kHz", 1e3}},
                       {{"mHz", 1e-3}}};  // 1/s is not here: it may be Hz or rad/s (is_per_second)
 
+  UnitTable temperature{{{"°C", 1.0}}, {{"C", 1.0}, {"degC", 1.0}, {"deg C", 1.0}, {"Celsius", 1.0}}};
+  UnitTable area{{{"mm²", 1e-6}, {"cm²", 1e-4}, {"m²", 1.0}}, {{"mm2", 1e-6}, {"cm2", 1e-4}, {"m2", 1.0}}};
+  UnitTable volume{{{"mm³", 1e-9}, {"cm³", 1e-6}, {"mL", 1e-6}, {"m³", 1.0}},
+                   {{"mm3", 1e-9}, {"cm3", 1e-6}, {"ml", 1e-6}, {"m3", 1.0}, {"L", 1e-3}, {"l", 1e-3}}};
+
   UnitTables() {
     for (Unit& unit : force_over_area(force, length)) stress.others.push_back(std::move(unit));
     torque.others = force_times_length(force, length);
-    for (UnitTable* table : {&time, &length, &force, &stress, &strain, &stretch, &angle, &torque, &frequency})
+    for (UnitTable* table : {&time, &length, &force, &stress, &strain, &stretch, &angle, &torque, &frequency,
+                             &temperature, &area, &volume})
       table->add_names();
   }
 
@@ -152,6 +158,12 @@ struct UnitTables {
         return angle;
       case Quantity::torque:
         return torque;
+      case Quantity::temperature:
+        return temperature;
+      case Quantity::area:
+        return area;
+      case Quantity::volume:
+        return volume;
       case Quantity::frequency:
         break;
     }
@@ -164,9 +176,9 @@ const UnitTables& tables() {
   return made;
 }
 
-constexpr std::array kQuantities{Quantity::time,   Quantity::length, Quantity::force,
-                                 Quantity::stress, Quantity::strain, Quantity::stretch,
-                                 Quantity::angle,  Quantity::torque, Quantity::frequency};
+constexpr std::array kQuantities{Quantity::time,      Quantity::length,      Quantity::force, Quantity::stress,
+                                 Quantity::strain,    Quantity::stretch,     Quantity::angle, Quantity::torque,
+                                 Quantity::frequency, Quantity::temperature, Quantity::area,  Quantity::volume};
 
 /// Units of speeds and rates, which no column of a test is read in: machines write them beside the others.
 bool is_rate(std::string_view unit) {

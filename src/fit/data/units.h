@@ -9,7 +9,20 @@
 
 namespace glisson::fit {
 
-enum class Quantity { time, length, force, stress, strain, stretch, angle, torque, frequency };
+enum class Quantity {
+  time,
+  length,
+  force,
+  stress,
+  strain,
+  stretch,
+  angle,
+  torque,
+  frequency,
+  temperature,
+  area,
+  volume
+};
 
 struct Unit {
   std::string name;

@@ -62,6 +62,7 @@ Json axis_json(const AxisOf& axis) { return {{"label", axis.label}, {"scale", ax
 AxisOf driven_axis(const fit::Measurement& m, const FitResult& result) {
   const double height = result.height.value_or(1.0);
   if (m.test == fit::LabTest::oscillation) return {"frequency [Hz]", 1.0};
+  if (m.heat) return {"time [s]", 1.0};
   if (m.deforming == fit::Deforming::indentation)
     return m.loaded() ? AxisOf{"force [N]", 1.0} : AxisOf{"depth [mm]", 1e3};
   if (m.drive_unit == "rad") return {"angle [°]", 180.0 / std::numbers::pi};
@@ -70,6 +71,15 @@ AxisOf driven_axis(const fit::Measurement& m, const FitResult& result) {
   if (result.height)
     return {m.deforming == fit::Deforming::compression ? "strain [%]" : "extension [%]", 100.0 / height};
   return {"displacement [mm]", 1000.0};
+}
+
+/// Of a scene of heat: sizes in mm, mm² and cm³, shares in percent.
+AxisOf heat_axis(const fit::Measurement& m) {
+  if (m.unit == "m") return {"length [mm]", 1e3};
+  if (m.unit == "m²") return {"area [mm²]", 1e6};
+  if (m.unit == "m³") return {"volume [cm³]", 1e6};
+  if (m.unit == "-") return {"share [%]", 100.0};
+  return {m.unit == "°C" ? "temperature [°C]" : "measured [" + m.unit + "]", 1.0};
 }
 
 /// The measured number: a stress where the area is known.
@@ -91,6 +101,8 @@ AxisOf measured_axis(const fit::Measurement& m, const FitResult& result) {
       return {"storage modulus [kPa]", 1e-3};
     case fit::Measured::loss:
       return {"loss modulus [kPa]", 1e-3};
+    case fit::Measured::heat:
+      return heat_axis(m);
     case fit::Measured::nominal:
       break;
   }
@@ -112,7 +124,7 @@ bool is_held(const fit::Curve& c) {
 /// Along x: time where the test goes by it, else what is driven.
 Json curve_x(const fit::Curve& curve, const FitResult& result) {
   const fit::Measurement& m = curve.measurement;
-  const bool by_time = m.test == fit::LabTest::relaxation || m.test == fit::LabTest::creep || is_held(curve);
+  const bool by_time = m.heat || m.test == fit::LabTest::relaxation || m.test == fit::LabTest::creep || is_held(curve);
   Json axis = axis_json(by_time ? AxisOf{"time [s]", 1.0} : driven_axis(m, result));
   axis["of"] = by_time ? "time" : "drive";
   axis["log"] = m.test == fit::LabTest::oscillation;
@@ -128,7 +140,7 @@ Json curve_json(const fit::CurveResult& c, const FitResult& result, const std::s
   return {{"name", c.curve.name},
           {"group", c.curve.group},
           {"test", word_of(m.test)},
-          {"deforming", word_of(m.deforming)},
+          {"deforming", m.heat ? Json(nullptr) : Json(word_of(m.deforming))},
           {"velocity_m_s", number(c.curve.velocity)},
           {"held_out", c.curve.held_out},
           {"unit", m.unit},
@@ -252,11 +264,14 @@ Json stability_json(const FitResult& result) {
 
 /// Strain and stress where the specimen's size is known, else displacement and force: of most curves, and of all errors.
 Json axis_x(const FitResult& result) {
+  const bool heat = !result.curves.empty() && result.curves.front().curve.measurement.heat;
+  if (heat) return axis_json({"time [s]", 1.0});
   if (result.height) return {{"label", "strain [%]"}, {"scale", 100.0 / *result.height}};
   return {{"label", "displacement [mm]"}, {"scale", 1000.0}};
 }
 Json axis_y(const FitResult& result) {
   if (result.unit.empty()) return {{"label", "part of the largest [%]"}, {"scale", 100.0}};
+  if (result.unit == "°C") return {{"label", "temperature [°C]"}, {"scale", 1.0}};
   if (result.unit == "Pa") return {{"label", "stress [kPa]"}, {"scale", 1e-3}};
   if (result.unit == "N" && result.area) return {{"label", "nominal stress [kPa]"}, {"scale", 1e-3 / *result.area}};
   return {{"label", result.unit == "N" ? "force [N]" : "measured [" + result.unit + "]"}, {"scale", 1.0}};

@@ -16,8 +16,10 @@
 #include <stdexcept>
 
 #include "fit/forward/candidates.h"
+#include "fit/forward/heat_model.h"
 #include "fit/forward/indentation_model.h"
 #include "fit/forward/offset_model.h"
+#include "fit/model/curve_kinds.h"
 
 namespace glisson::fit {
 namespace {
@@ -168,6 +170,13 @@ struct Maker {
     return with_offsets(
         std::make_shared<IndentationModel>(problem.curves, *problem.layer, tissue, std::move(parameters), options));
   }
+  /// @param steps  equal ones between two samples; 0: as the scene chooses
+  std::shared_ptr<const HeatModel> heat(int steps = 0) const {
+    if (inner.size() != keys.size())
+      throw std::invalid_argument("parameters `curve.…` are of a press or an insertion, and not of test = \"heat\"");
+    return std::make_shared<HeatModel>(problem.scene, keys, problem.curves,
+                                       HeatModelOptions{.load = problem.load, .steps = steps, .stop = problem.stop});
+  }
   std::vector<double> inner_values(std::span<const double> all) const {
     std::vector<double> values;
     for (std::size_t i = 0; i < keys.size(); ++i) {
@@ -274,10 +283,56 @@ std::vector<Forces> true_forces(Ladder& ladder) {
 /// What a model may cost to be taken [s]: less than the one that is; a smooth one some more than the scene itself.
 double patience(const Ladder& ladder) { return (ladder.chosen == 0 ? 1.5 : 1.0) * ladder.taken().cost; }
 
+/// Measures a model, and takes it where it serves and costs less than the one that is taken.
+void try_out(const Comparison& comparison, Ladder& ladder, Rung rung, const Trial& trial) {
+  const bool known = !comparison.problem.taken.empty();
+  comparison.measure(rung, trial, known ? kEver : patience(ladder));
+  ladder.rungs.push_back(std::move(rung));
+  const Rung& last = ladder.rungs.back();
+  if (last.serves() && (known || last.cost < patience(ladder))) ladder.chosen = ladder.rungs.size() - 1;
+}
+
+void fill_allowed(Ladder& ladder, const Comparison& comparison) {
+  for (std::size_t c = 0; c < ladder.compared.size(); ++c)
+    ladder.allowed.push_back(allowance(comparison.problem.curves[ladder.compared[c]], comparison.truth[0][c],
+                                       comparison.problem.spec.tolerance));
+}
+
+/// @throws std::invalid_argument where the model of an interrupted run is none of these
+void require_taken(const Ladder& ladder, const ForwardProblem& problem) {
+  if (problem.taken.empty() || ladder.taken().name == problem.taken) return;
+  throw std::invalid_argument(
+      "the forward model \"" + problem.taken +
+      "\", which an interrupted run chose, does not apply to this fit; start again with --fresh");
+}
+
+/// The scene of heat with the steps that it chooses, and with equal ones: these make temperatures smooth functions of the parameters.
+Ladder heat_ladder(const ForwardProblem& problem, const Maker& make) {
+  constexpr int kMostSteps = 8;  // between two samples
+  Ladder ladder;
+  ladder.compared = one_of_each_group(problem.curves);
+  ladder.places = places_of(problem.parameters, problem.spec.points);
+  const std::shared_ptr<const HeatModel> scene = make.heat();
+  scene->require_columns(ladder.places[0]);
+  ladder.rungs.push_back({.kind = RungKind::heat, .name = "the scene", .failure = {}, .model = scene});
+  if (problem.spec.kind == ForwardKind::scene) return ladder;
+  const Comparison comparison{problem, ladder, true_forces(ladder)};
+  fill_allowed(ladder, comparison);
+  for (int steps = 1; steps <= kMostSteps && ladder.chosen == 0; steps *= 2) {
+    const std::string name = std::to_string(steps) + (steps == 1 ? " step" : " equal steps") + " from sample to sample";
+    if (!problem.taken.empty() && name != problem.taken) continue;
+    try_out(comparison, ladder, {.kind = RungKind::heat, .name = name, .failure = {}, .model = make.heat(steps)},
+            [&] { return make.heat(steps); });
+  }
+  require_taken(ladder, problem);
+  return ladder;
+}
+
 }  // namespace
 
 Ladder choose_forward(const ForwardProblem& problem) {
   const Maker make(problem);
+  if (are_of_heat(problem.curves)) return heat_ladder(problem, make);
   Ladder ladder;
   if (problem.plates) {
     ladder.rungs.push_back(
@@ -313,21 +368,12 @@ Ladder choose_forward(const ForwardProblem& problem) {
       {.kind = RungKind::scene, .name = "the scene", .failure = {}, .model = make.with_offsets(scene)});
   if (problem.spec.kind == ForwardKind::scene) return ladder;
 
-  Comparison comparison{problem, ladder, true_forces(ladder)};
-  for (std::size_t c = 0; c < ladder.compared.size(); ++c)
-    ladder.allowed.push_back(
-        allowance(problem.curves[ladder.compared[c]], comparison.truth[0][c], problem.spec.tolerance));
-
+  const Comparison comparison{problem, ladder, true_forces(ladder)};
+  fill_allowed(ladder, comparison);
   const bool known = !problem.taken.empty();
   const auto wanted = [&](const std::string& name) { return !known || name == problem.taken; };
-  const auto try_out = [&](Rung rung, const Trial& trial) {
-    comparison.measure(rung, trial, known ? kEver : patience(ladder));
-    ladder.rungs.push_back(std::move(rung));
-    const Rung& last = ladder.rungs.back();
-    if (last.serves() && (known || last.cost < patience(ladder))) ladder.chosen = ladder.rungs.size() - 1;
-  };
   if (auto specimen = size && wanted(kSpecimen) ? make.specimen(*size) : nullptr)
-    try_out({.kind = RungKind::specimen, .name = kSpecimen, .failure = {}, .model = specimen},
+    try_out(comparison, ladder, {.kind = RungKind::specimen, .name = kSpecimen, .failure = {}, .model = specimen},
             [&] { return specimen; });
   double step = 0.0;
   bool heavier_serves = false;
@@ -337,7 +383,8 @@ Ladder choose_forward(const ForwardProblem& problem) {
     if (own_steps && step == 0.0) step = make.explicit_step(ladder.compared[0], ladder.places);
     if (own_steps) c.adjust = heavier_tissue(c.factor, step * std::sqrt(c.factor));
     const double longest = known ? kEver : std::max(kShortest, patience(ladder));
-    try_out({.kind = RungKind::changed_scene,
+    try_out(comparison, ladder,
+            {.kind = RungKind::changed_scene,
              .name = c.name,
              .failure = {},
              .model = make.with_offsets(make.scene(c.adjust, kEver, own_steps)),
@@ -346,10 +393,7 @@ Ladder choose_forward(const ForwardProblem& problem) {
             [&] { return make.with_offsets(make.scene(c.adjust, longest, own_steps)); });
     heavier_serves = heavier_serves || (own_steps && ladder.rungs.back().serves());
   }
-  if (known && ladder.taken().name != problem.taken)
-    throw std::invalid_argument(
-        "the forward model \"" + problem.taken +
-        "\", which an interrupted run chose, does not apply to this fit; start again with --fresh");
+  require_taken(ladder, problem);
   return ladder;
 }
 

@@ -1,7 +1,7 @@
 // ladder.h — the cheapest forward model that keeps its error below the noise of the data.
 //
 //   specimen · quasi_static · implicit, long steps · semi_implicit · central_difference, heavier tissue · …  ◀── compared ──▶  the scene itself
-//   a cylinder between plates with friction, or a layer under an indenter, where [specimen] says so: by itself
+//   a cylinder between plates with friction, or a layer under an indenter, where [specimen] says so, or a scene of heat: by itself
 //
 // All are compared at the start of the parameters and at some places within their bounds, on one curve of each group (its
 // repetitions go the same way). The cheapest whose error is everywhere below `tolerance` × noise is taken; if none is, the
@@ -24,7 +24,8 @@ enum class RungKind {
   changed_scene,  ///< with other steps or a heavier tissue
   specimen,       ///< a material point, or a specimen that deforms alike all over
   barrel,         ///< a cylinder that bulges between its plates
-  layer           ///< a layer under an indenter
+  layer,          ///< a layer under an indenter
+  heat            ///< a scene of heat as it is written
 };
 
 /// A model that was tried.
@@ -39,7 +40,9 @@ struct Rung {
   Integrator integrator{};  ///< of `steps`
   int steps = 0;            ///< equal ones that every run has; 0: the model chooses its steps otherwise
   bool serves() const { return failure.empty() && share < 1.0; }
-  bool runs_scene() const { return kind == RungKind::scene || kind == RungKind::changed_scene; }
+  bool runs_scene() const {
+    return kind == RungKind::scene || kind == RungKind::changed_scene || kind == RungKind::heat;
+  }
 };
 
 struct Ladder {

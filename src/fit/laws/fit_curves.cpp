@@ -103,6 +103,7 @@ CurvesOfTables load_by_tests(const std::vector<DataSpec>& parts, const SpecimenS
 /// `test 2`; where there are tests of several kinds their own names, numbered from the second of a kind on.
 std::string default_group(const std::vector<DataSpec>& data, std::size_t number) {
   const LabTest test = data[number].test;
+  if (test == LabTest::heat) return name_of(data[number].heat);
   const bool all_presses =
       std::all_of(data.begin(), data.end(), [](const DataSpec& d) { return d.test == LabTest::compression; });
   if (all_presses) return "test " + std::to_string(number + 1);
@@ -115,6 +116,7 @@ std::string default_group(const std::vector<DataSpec>& data, std::size_t number)
 double modulus_of(const Curve& c, double area, double height) {
   constexpr double kPart = 0.1;
   const Measurement& m = c.measurement;
+  if (m.heat) return 0.0;
   double most = 0.0, fd = 0.0, dd = 0.0;
   for (const double d : c.displacement) most = std::max(most, std::abs(d));
   for (std::size_t i = 0; i < c.size(); ++i) {
@@ -246,12 +248,14 @@ FitCurves read_curves(const FitSpec& spec, const SpecimenSize& size, const std::
 }
 
 std::vector<double> spreads_of(const std::vector<Curve>& curves, Weighing how) {
+  if (how == Weighing::automatic && are_of_heat(curves)) how = Weighing::noise;
   if (how == Weighing::automatic) how = of_one_kind(curves) ? Weighing::common : Weighing::peak;
   std::vector<double> list;
   double squares = 0.0;
   for (const Curve& c : curves) {
     const double peak = std::max(largest_force(c), 1e-12);
-    list.push_back(how == Weighing::peak ? 0.01 * peak : std::max(c.noise, 1e-3 * peak));
+    const double noise = c.noise_given ? c.noise : std::max(c.noise, 1e-3 * peak);
+    list.push_back(how == Weighing::peak ? 0.01 * peak : noise);
     squares += list.back() * list.back();
   }
   if (how == Weighing::common)

@@ -25,7 +25,7 @@ struct FitCurves {
 FitCurves read_curves(const FitSpec& spec, const SpecimenSize& size, const std::filesystem::path& base);
 
 /// The standard deviation that the residuals of each curve are measured in [N]. Where a curve's noise is not known, or is
-/// less than a thousandth of its largest force, that thousandth stands for it.
+/// less than a thousandth of its largest force, that thousandth stands for it; not where it is given.
 std::vector<double> spreads_of(const std::vector<Curve>& curves, Weighing how);
 
 /// The errors of all curves in their common_unit (curve_kinds.h).

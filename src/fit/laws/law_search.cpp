@@ -60,6 +60,7 @@ std::string asked_for(const Rung& taken, const std::optional<SpecimenSpec>& spec
       return specimen && specimen->shape == SpecimenShape::point ? "a material point." : "a homogeneous specimen.";
     case RungKind::scene:
     case RungKind::changed_scene:
+    case RungKind::heat:
       break;
   }
   return taken.name + ", as asked for.";
@@ -144,9 +145,11 @@ RunsAtOnce LawSearch::runs_at_once() const {
   const std::vector<Curve>& fitted = problem_->curves();
   std::vector<Parameter> keys = forward_.parameters;
   SteadyPresses steady;
-  if (dear()) steady = steady_presses(fitted, contact_ranges(keys, fitted));
+  const bool heat = are_of_heat(fitted);
+  if (dear() && !heat) steady = steady_presses(fitted, contact_ranges(keys, fitted));
   const auto press = [&](std::size_t c) { return steady.of.empty() ? std::nullopt : steady.of[c]; };
   const auto same = [&](std::size_t a, std::size_t b) {
+    if (heat) return fitted[a].measurement.heat->variant == fitted[b].measurement.heat->variant;
     if (press(a) || press(b)) return press(a) == press(b);
     return fitted[a].time == fitted[b].time && fitted[a].displacement == fitted[b].displacement;
   };

@@ -13,8 +13,10 @@ double largest_force(const Curve& curve) {
 
 bool same_kind(const Curve& a, const Curve& b) {
   const Measurement &m = a.measurement, &n = b.measurement;
-  return m.deforming == n.deforming && m.measured == n.measured && m.unit == n.unit;
+  return m.deforming == n.deforming && m.measured == n.measured && m.unit == n.unit && m.heat == n.heat;
 }
+
+bool are_of_heat(std::span<const Curve> curves) { return !curves.empty() && curves.front().measurement.heat; }
 
 bool of_one_kind(const std::vector<Curve>& curves) {
   return std::all_of(curves.begin(), curves.end(), [&](const Curve& c) { return same_kind(c, curves.front()); });

@@ -84,6 +84,8 @@ struct FitSpec {
   std::vector<LawSpec> laws;
   std::vector<ExperimentSpec> experiments;
   std::optional<InsertionSpec> insertion;  ///< fits membranes in place of parameters
+
+  bool is_heat() const { return !data.empty() && data.front().is_heat(); }
 };
 
 /// Reads FIT.toml. @throws SceneError with every problem of the file

@@ -11,14 +11,17 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Units that keys end with; those of the longest ends first.
-constexpr const char* kUnits[]{"N·s/m²", "N·s/m", "kg/m³", "m/s²", "Pa·s", "mm/s", "Pa/m", "1/s", "N/m", "J/m²",
-                               "mm²",    "m/s",   "kg",    "°",    "mm",   "Pa",   "Hz",   "m",   "s",   "N"};
+constexpr const char* kUnits[]{"W/(m² K)", "W/(m K)", "J/(kg K)", "J/kg", "W/m³", "W/m²", "W/m",  "1/K",
+                               "N·s/m²",   "N·s/m",   "kg/m³",    "m/s²", "Pa·s", "mm/s", "Pa/m", "1/s",
+                               "N/m",      "J/m²",    "mm²",      "m/s",  "kg",   "°",    "mm",   "Pa",
+                               "Hz",       "m",       "s",        "N",    "W",    "V",    "K"};
 
 }  // namespace
 
 std::string unit_of_key(const std::string& key) {
   const std::string last = key.substr(key.rfind('.') + 1);  // `time_s` of `tissue.maxwell[0].time_s`
   const std::string plain = last.substr(0, last.find('['));
+  if (plain.ends_with("_C")) return "°C";
   for (const char* unit : kUnits) {
     if (plain.ends_with(FieldText{.unit = unit}.key())) return unit;
   }

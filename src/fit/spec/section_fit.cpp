@@ -112,6 +112,12 @@ void check_tests(const FitSpec& fit, const Node& table, const Place& place) {
     const DataSpec& data = fit.data[i];
     const Node& own = (*table.find("data")->array())[i];
     const Place here = place.inside("data." + std::to_string(i), own.where);
+    if (data.is_heat() != fit.is_heat())
+      here.complain("tests of heat and of mechanics are fitted apart; give each a FIT.toml of its own");
+    if (data.is_heat()) {
+      if (fit.scene.empty()) here.complain(*own.find("test"), "test", "test = \"heat\" needs a `scene` with [heat]");
+      continue;
+    }
     check_layer(fit, data, own, here);
     if (data.test == LabTest::compression) continue;
     const std::string test = "test = \"" + std::string(word_of(data.test)) + "\" ";
@@ -125,6 +131,16 @@ void check_tests(const FitSpec& fit, const Node& table, const Place& place) {
     if (fit.specimen && twisted && !round)
       here.complain(*own.find("test"), "test", "torsion needs [specimen] kind = \"cylinder\"");
   }
+}
+
+/// What of [forward] goes by tools and laws of the mechanics.
+void check_heat(const FitSpec& fit, const Place& place) {
+  const ForwardSpec& f = fit.forward;
+  const bool mechanics =
+      f.kind == ForwardKind::uniaxial || f.integrator || !f.tool.empty() || !f.force.empty() || f.approach > 0.0;
+  if (fit.is_heat() && mechanics)
+    place.complain(
+        "[forward] of a fit of heat has kind = \"auto\" or \"scene\", `tolerance` and `points` alone; remove the rest");
 }
 
 /// One needle, one curve, and nothing else that is free.
@@ -147,6 +163,7 @@ void finish_fit(FitSpec& fit, const Node& table, const Place& place) {
   check_faces(fit, place);
   check_tests(fit, table, place);
   check_insertion(fit, place);
+  check_heat(fit, place);
   if (fit.data.empty()) place.complain("there are no curves; give one or more [[data]] with `files`");
   const bool any_fitted = std::any_of(fit.data.begin(), fit.data.end(), [](const DataSpec& d) { return !d.held_out; });
   if (!fit.data.empty() && !any_fitted)

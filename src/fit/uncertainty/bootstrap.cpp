@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <random>
 
@@ -29,6 +30,13 @@ class Draw {
       const std::uint64_t x = random_();
       if (x >= beyond) return x % n;
     }
+  }
+
+  /// Of a standard normal distribution [BoxMuller1958].
+  double normal() {
+    const double u = (static_cast<double>(below(1ull << 53)) + 0.5) * 0x1p-53;
+    const double angle = 2.0 * std::numbers::pi * static_cast<double>(below(1ull << 53)) * 0x1p-53;
+    return std::sqrt(-2.0 * std::log(u)) * std::cos(angle);
   }
 
  private:
@@ -65,6 +73,12 @@ class Source {
       const double effective = covariance.noise.effective_by_curve[c];
       if (effective > 0.0) times_[c] = static_cast<double>(problem.curves()[c].size()) / effective;
     }
+    given_ = covariance.noise.kind == NoiseKind::given;
+    variance_ = covariance.noise.variance;
+    if (given_) {
+      freedom_ = covariance.freedom;
+      return;
+    }
     const double effective = covariance.noise.effective;
     const double left = std::max(effective - static_cast<double>(covariance.parameters()), 1.0);
     growth_ = std::sqrt(std::max(effective / left, 1.0));
@@ -83,7 +97,9 @@ class Source {
     std::vector<Curve> curves;
     std::vector<std::size_t> origin;
     for (const Group& g : groups_) {
-      if (g.curves.size() >= kFewestRepetitions)
+      if (given_)
+        draw_noise(g, draw, curves, origin);
+      else if (g.curves.size() >= kFewestRepetitions)
         draw_curves(g, draw, curves, origin);
       else
         draw_blocks(g, draw, curves, origin);
@@ -93,6 +109,7 @@ class Source {
 
   std::vector<std::string> notes() const {
     std::vector<std::string> out;
+    if (given_) return {"replicates are the fitted curves with noise of the deviations that are given"};
     for (const Group& g : groups_) {
       const std::string n = std::to_string(g.curves.size());
       out.push_back(g.curves.size() >= kFewestRepetitions
@@ -120,6 +137,17 @@ class Source {
     }
   }
 
+  void draw_noise(const Group& g, Draw& draw, std::vector<Curve>& curves, std::vector<std::size_t>& origin) const {
+    for (const std::size_t c : g.curves) {
+      Curve curve = problem_.curves()[c];
+      const double unit = problem_.spread()[c] / curve.weight, deviation = std::sqrt(variance_);
+      for (std::size_t i = 0; i < curve.size(); ++i)
+        curve.force[i] += unit * (residuals_[problem_.offset(c) + i] + deviation * draw.normal());
+      curves.push_back(std::move(curve));
+      origin.push_back(c);
+    }
+  }
+
   void draw_blocks(const Group& g, Draw& draw, std::vector<Curve>& curves, std::vector<std::size_t>& origin) const {
     for (const std::size_t c : g.curves) {
       Curve curve = problem_.curves()[c];
@@ -144,7 +172,8 @@ class Source {
   std::vector<double> residuals_;
   std::vector<Group> groups_;
   std::vector<double> times_;
-  double growth_ = 1.0, freedom_ = 0.0;
+  double growth_ = 1.0, freedom_ = 0.0, variance_ = 1.0;
+  bool given_ = false;  ///< the noise is what whoever measured says
 };
 
 struct Refit {

@@ -130,6 +130,8 @@ const char* name_of(NoiseKind kind) {
       return "autocorrelated";
     case NoiseKind::by_curve:
       return "by curve";
+    case NoiseKind::given:
+      return "given";
   }
   return "";
 }

@@ -3,6 +3,7 @@
 // Nothing is inverted that the curves do not determine: J is split into directions of z (singular vectors), weakest first,
 // and a direction without weight is reported, not divided by. What the noise is decides the rest:
 //
+//   given            C = max(1, χ²/(N − p)) (JᵀJ)⁻¹                     each value has the deviation that whoever measured says
 //   independent      C = σ² (JᵀJ)⁻¹                                     residuals look like white noise
 //   autocorrelated   C = σ² (JᵀJ)⁻¹ JᵀVJ (JᵀJ)⁻¹                        they swing (residual_correlation.h)
 //   by_curve         C = (JᵀJ)⁻¹ (Σ_c u_c u_cᵀ) (JᵀJ)⁻¹ (G − 1) / G     G specimens, which differ from one another
@@ -25,7 +26,7 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 inline constexpr double kTakesPart = 1e-3;  ///< of a unit vector: below it a parameter is no part of a direction
 
 enum class Hold { free, at_low, at_high };
-enum class NoiseKind { independent, autocorrelated, by_curve };
+enum class NoiseKind { independent, autocorrelated, by_curve, given };
 const char* name_of(NoiseKind kind);
 
 /// A combination of the parameters that the curves see as one, Σ vector_p z_p.
@@ -38,7 +39,7 @@ struct Direction {
 
 struct NoiseEstimate {
   NoiseKind kind = NoiseKind::independent;
-  std::string why;                         ///< a sentence: which of the three is used, on what evidence
+  std::string why;                         ///< a sentence: which of them is used, on what evidence
   double variance = 0.0;                   ///< σ² of the scaled residuals
   double rms = 0.0;                        ///< of the scaled residuals
   std::size_t samples = 0;                 ///< residuals with weight

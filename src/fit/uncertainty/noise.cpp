@@ -89,6 +89,30 @@ bool NoiseStudy::stand_alone() const {
   });
 }
 
+/// Whether residuals are measured in deviations that whoever measured says.
+bool NoiseStudy::is_given() const {
+  return !numbers_.empty() && std::ranges::all_of(numbers_, [&](std::size_t c) {
+    const Curve& curve = problem_.curves()[c];
+    return curve.noise_given && curve.weight == 1.0 && problem_.spread()[c] == curve.noise;
+  });
+}
+
+/// Deviations that are given leave nothing to estimate, but a law that misses by more than they say widens its intervals.
+NoiseEstimate NoiseStudy::as_given(NoiseEstimate e) {
+  const double left = samples_ - static_cast<double>(jacobian_.cols()), squares = scores_.squaredNorm();
+  const double ratio = left > 0.0 ? squares / left : 0.0;
+  variance_ = std::max(1.0, ratio);
+  for (std::size_t c = 0; c < curves_.size(); ++c)
+    e.effective_by_curve[numbers_[c]] = static_cast<double>(curves_[c].size);
+  e.effective = samples_;
+  e.why = "intervals follow from the deviations that are given";
+  if (ratio > 1.0)
+    e.why += format(", widened by %.2g, since the residuals are so many times as large", std::sqrt(ratio), 0.0);
+  if (!(left > 0.0))
+    e.why += ": there are as many parameters as values, so that nothing tells whether these deviations are right";
+  return e;
+}
+
 NoiseKind NoiseStudy::kind_of(const CovarianceOptions& options, NoiseEstimate& e) const {
   const bool alone = stand_alone();
   if (options.force) {
@@ -118,10 +142,18 @@ NoiseKind NoiseStudy::kind_of(const CovarianceOptions& options, NoiseEstimate& e
 
 NoiseEstimate NoiseStudy::choose(const CovarianceOptions& options) {
   NoiseEstimate e;
+  e.effective_by_curve.assign(problem_.curves().size(), 0.0);
+  e.samples = static_cast<std::size_t>(samples_);
+  e.rms = std::sqrt(scores_.squaredNorm() / std::max(samples_, 1.0));
+  if (!options.force && is_given()) {
+    e.kind = kind_ = NoiseKind::given;
+    e = as_given(std::move(e));
+    e.variance = variance_;
+    return e;
+  }
   std::vector<std::vector<double>> series;
   for (const Rows& curve : curves_) series.push_back(series_of(of(curve)));
   e.independence = independence_probability(series);
-  e.effective_by_curve.assign(problem_.curves().size(), 0.0);
   const bool white = options.force == NoiseKind::independent;
   if (!white) correlation_ = ResidualCorrelation(scores_, jacobian_, curves_);
   for (std::size_t c = 0; c < curves_.size(); ++c) {
@@ -134,8 +166,6 @@ NoiseEstimate NoiseStudy::choose(const CovarianceOptions& options) {
   variance_ = kind_ == NoiseKind::independent ? scores_.squaredNorm() / std::max(left, 1.0) : correlation_.variance();
   e.kind = kind_;
   e.variance = variance_;
-  e.rms = std::sqrt(scores_.squaredNorm() / std::max(samples_, 1.0));
-  e.samples = static_cast<std::size_t>(samples_);
   return e;
 }
 
@@ -186,6 +216,7 @@ Matrix NoiseStudy::by_curve() const {
 Matrix NoiseStudy::covariance() const {
   switch (kind_) {
     case NoiseKind::independent:
+    case NoiseKind::given:
       return variance_ * inverse_;
     case NoiseKind::autocorrelated:
       return variance_ * inverse_ * (jacobian_.transpose() * correlation_.times(jacobian_, curves_)) * inverse_;
@@ -213,7 +244,9 @@ double NoiseStudy::freedom_of(const Vector& combination) const {
 
 double NoiseStudy::freedom() const {
   const double left = std::max(samples_ - static_cast<double>(jacobian_.cols()), 1.0);
-  if (kind_ == NoiseKind::independent) return left;
+  constexpr double kMany = 1e6;  // as good as a normal distribution
+  if (kind_ == NoiseKind::given && variance_ == 1.0) return kMany;
+  if (kind_ == NoiseKind::independent || kind_ == NoiseKind::given) return left;
   if (kind_ == NoiseKind::autocorrelated) return correlation_.freedom(jacobian_, inverse_, curves_);
   if (of_kinds()) return freedom_by_kind();
   double least = static_cast<double>(curves_.size() - 1);

@@ -28,6 +28,8 @@ class NoiseStudy {
   Eigen::MatrixXd block(const Rows& curve) const { return jacobian_.middleRows(curve.first, curve.size); }
   NoiseKind kind_of(const CovarianceOptions& options, NoiseEstimate& e) const;
   bool stand_alone() const;
+  bool is_given() const;
+  NoiseEstimate as_given(NoiseEstimate e);
   bool of_kinds() const;
   Eigen::MatrixXd rest_of(const Rows& curve) const;
   Eigen::MatrixXd by_curve() const;

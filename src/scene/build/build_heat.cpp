@@ -219,8 +219,23 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
+/// The mean of each region that is tissue, for a scene that names no sensor.
+void BuiltHeat::add_means(const Variant& variant) {
+  const TetMesh& mesh = simulation.mesh();
+  const std::vector<int> hollow = hollow_regions(variant, mesh);
+  std::set<int> regions;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) regions.insert(mesh.region_of(t));
+  for (const int region : regions) {
+    if (std::ranges::count(hollow, region) > 0) continue;
+    means_.push_back({region, {weights_of_region(mesh, region)}});
+    temperature_columns_.push_back((regions.size() == 1 ? "" : name_of_region(mesh, region) + "_") + "mean_C");
+    is_mean_.push_back(1);
+  }
+}
+
 void BuiltHeat::add_sensors(const Variant& variant) {
   const TetMesh& mesh = simulation.mesh();
+  if (heat_of(variant).sensors.empty()) return add_means(variant);
   for (const HeatSensorSpec& x : heat_of(variant).sensors) {
     const int count = x.from ? x.count : x.region.empty() ? 1 : 0;
     for (int k = 0; k < count; ++k) {

@@ -55,7 +55,7 @@ tissue.law = { kind = "linear", slope_Pa = 20000 }
 const std::string_view kReferenceOverrides = R"(## Overrides
 
 `glisson run SCENE --set KEY=VALUE` changes a scene without editing it. KEY is the dotted path of a key, with names or
-numbers for elements of lists; VALUE is TOML, otherwise plain text:
+numbers for elements of lists, or `*` for each of them (`'heat.probe.*.radius_mm=1'`); VALUE is TOML, otherwise plain text:
 
 ```text
 glisson run scene.toml --set tissue.density_kg_m3=1060

@@ -7,6 +7,8 @@
 namespace glisson::scene {
 namespace {
 
+constexpr const char* kEach = "*";  // each element of a list: heat.probe.*.radius_mm
+
 bool contains(const std::vector<std::string>& group, const std::string& key) {
   return std::find(group.begin(), group.end(), key) != group.end();
 }
@@ -50,7 +52,9 @@ std::string names_of(const Array& elements) {
 Node merged_list(const KeySpec& key, Node list, const Table& overlay, const Place& place) {
   for (const Member& m : overlay) {
     const Place here = place.inside(m.key, m.where);
-    if (const Node* called = element_called(*list.array(), m.key)) {
+    if (m.key == kEach && !list.array()->empty()) {
+      for (Node& element : *list.array()) element = merged(*key.section, element, m.value, here);
+    } else if (const Node* called = element_called(*list.array(), m.key)) {
       Node* element = list.array()->data() + (called - list.array()->data());
       *element = merged(*key.section, *element, m.value, here);
     } else {

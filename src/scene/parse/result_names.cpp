@@ -9,10 +9,10 @@ namespace {
 
 constexpr std::size_t kLongestName = 80;
 
-constexpr std::array<std::string_view, 16> kResults{".glisson",     "report.html", "scene.toml",      "fit.toml",
-                                                    "compare.json", "fit.json",    "fit.state.json",  "tissue.toml",
-                                                    "summary.json", "forces.csv",  "probes.csv",      "events.csv",
-                                                    "frames.pvd",   "view.jsonl",  "temperature.csv", "heat.csv"};
+constexpr std::array<std::string_view, 18> kResults{
+    ".glisson",       "report.html", "scene.toml",      "fit.toml",   "compare.json", "fit.json",
+    "fit.state.json", "tissue.toml", "summary.json",    "forces.csv", "probes.csv",   "events.csv",
+    "frames.pvd",     "view.jsonl",  "temperature.csv", "heat.csv",   "keys.toml",    "membranes.toml"};
 
 bool is_around(std::string_view name, std::string_view begin, std::string_view end) {
   return name.size() > begin.size() + end.size() && name.starts_with(begin) && name.ends_with(end);

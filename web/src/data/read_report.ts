@@ -13,6 +13,7 @@ import type {
   InstrumentForm,
   InstrumentPlace,
   InstrumentTable,
+  IsothermData,
   MapData,
   ReportData,
   SceneData,
@@ -130,12 +131,18 @@ function readSurface(raw: Raw): SurfaceData | null {
     ...(isRecord(raw["container"]) ? { container: readVessel(raw["container"]) } : {}),
     tissue: text(raw["tissue"]),
     ...(raw["tets"] ? { tets: text(raw["tets"]) } : {}),
+    ...(Array.isArray(raw["isotherms"]) ? { isotherms: raw["isotherms"].map((one) => readIsotherm(record(one))) } : {}),
     regions: list(raw["regions"])
       .map(record)
       .map((region) => ({ name: text(region["name"]), triangles: text(region["triangles"]) })),
     frames: list(raw["frames"]).map((frame) => readFrame(record(frame))),
   };
 }
+
+const readIsotherm = (raw: Raw): IsothermData => ({
+  name: text(raw["name"]),
+  temperature_C: finite(raw["temperature_C"], 0),
+});
 
 const KINDS = ["needle", "punch", "ball", "probe", "plate", "wall", "block", "blade"] as const;
 

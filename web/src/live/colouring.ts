@@ -45,7 +45,8 @@ export class ColourRange {
 }
 
 /** Number of the field that the program is asked for; none where the page has what it needs. */
-export const fieldOf = ({ name }: Colouring): number => (name === "displacement" ? FIELDS.none : FIELDS[name]);
+export const fieldOf = ({ name }: Colouring): number =>
+  name in FIELDS ? FIELDS[name as keyof typeof FIELDS] : FIELDS.none;
 
 /** The numbers of a frame at each vertex, and between which they lie; null: this frame does not have them. */
 export function valuesOf(

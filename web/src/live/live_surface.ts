@@ -11,6 +11,7 @@ export class LiveSurface implements SurfaceMotion {
   readonly rest: Float32Array;
   readonly fixed: Uint8Array;
   readonly end = 0;
+  readonly isotherms = [];
   readonly tissue: string;
   readonly regions: readonly { name: string; triangles: Uint32Array }[];
   private readonly regionTriangles: readonly Uint32Array[];
@@ -44,6 +45,10 @@ export class LiveSurface implements SurfaceMotion {
       kinds: this.kinds,
       instruments: [],
     };
+  }
+
+  temperatureAt(): null {
+    return null;
   }
 
   get frames(): readonly Frame[] {

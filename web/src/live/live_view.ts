@@ -4,7 +4,7 @@ import * as THREE from "three";
 import { strokeOf } from "../charts/line_style.ts";
 import { type ClipBody, clipKey, clipPlane, firstSeen, rememberClip, rememberedClip } from "../mesh3d/clip.ts";
 import { ClipControls } from "../mesh3d/clip_controls.ts";
-import { AS_TISSUE, type Colouring, COLOURINGS, colouringOf } from "../mesh3d/fields.ts";
+import { AS_TISSUE, type Colouring, LIVE_COLOURINGS, colouringOf } from "../mesh3d/fields.ts";
 import { fineIsFast, hopeForFine, Pace } from "../mesh3d/drawing_speed.ts";
 import { lookKey, rememberedLook, rememberLook, TISSUE } from "../mesh3d/look.ts";
 import { LookControls } from "../mesh3d/look_controls.ts";
@@ -60,10 +60,10 @@ export class LiveView {
   });
   edges = false;
   onColour: (colouring: Colouring) => void = () => {};
-  private readonly lookSettings = rememberedLook("live", [TISSUE, ...COLOURINGS.map(({ name }) => name)]);
+  private readonly lookSettings = rememberedLook("live", [TISSUE, ...LIVE_COLOURINGS.map(({ name }) => name)]);
   readonly look = new LookControls(
     this.lookSettings,
-    COLOURINGS.map(({ name, label }) => ({ value: name, label })),
+    LIVE_COLOURINGS.map(({ name, label }) => ({ value: name, label })),
     () => this.lookChanged(),
   );
   private readonly clip = rememberedClip("live", { on: false, axis: "y", at: null, flipped: false });
@@ -466,7 +466,7 @@ export class LiveView {
     else if (this.clipBody && !event.ctrlKey && !event.metaKey && clipKey(event.key, this.clip, this.clipBody)) {
       this.cutChanged();
       this.cut.refresh();
-    } else if (!event.ctrlKey && !event.metaKey && lookKey(event.key, this.lookSettings, COLOURINGS[0]!.name))
+    } else if (!event.ctrlKey && !event.metaKey && lookKey(event.key, this.lookSettings, LIVE_COLOURINGS[0]!.name))
       this.lookChanged();
     else return;
     event.preventDefault();

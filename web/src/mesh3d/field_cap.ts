@@ -1,10 +1,7 @@
 // field_cap.ts — the face of a body that is cut open, with the field on it: where the plane meets the tets.
-//
-//   a tet with one corner on one side: a triangle      two and two: a quadrilateral, drawn as two
-//
-// Corners of the face lie on edges of tets; place and value go along an edge in proportion to the distance from the plane.
 import * as THREE from "three";
 import { colourTexels } from "./colour_map.ts";
+import { levelSurface } from "./level_surface.ts";
 import { lookupOf } from "./tissue_material.ts";
 
 const TEXELS = 256;
@@ -31,33 +28,12 @@ export function sectionOf(
     heights[v] =
       normal.x * positions[3 * v]! + normal.y * positions[3 * v + 1]! + normal.z * positions[3 * v + 2]! + constant;
   const section: Section = { points: [], values: [] };
-  const corner = (a: number, b: number) => {
-    const share = heights[a]! / (heights[a]! - heights[b]!);
+  const { from, to, shares, triangles } = levelSurface(heights, tets);
+  for (const corner of triangles) {
+    const [a, b, share] = [from[corner]!, to[corner]!, shares[corner]!];
     for (let k = 0; k < 3; k++)
       section.points.push(positions[3 * a + k]! + share * (positions[3 * b + k]! - positions[3 * a + k]!));
     section.values.push(values[a]! + share * (values[b]! - values[a]!));
-  };
-  const [above, below]: [number[], number[]] = [[], []];
-  for (let t = 0; t + 4 <= tets.length; t += 4) {
-    above.length = below.length = 0;
-    for (let k = 0; k < 4; k++) (heights[tets[t + k]!]! >= 0 ? above : below).push(tets[t + k]!);
-    if (above.length === 0 || below.length === 0) continue;
-    if (above.length === 2) {
-      const [a, b] = above as [number, number];
-      const [c, d] = below as [number, number];
-      for (const [from, to] of [
-        [a, c],
-        [a, d],
-        [b, d],
-        [a, c],
-        [b, d],
-        [b, c],
-      ] as const)
-        corner(from, to);
-    } else {
-      const [one, others] = above.length === 1 ? [above[0]!, below] : [below[0]!, above];
-      for (const other of others) corner(one, other);
-    }
   }
   return section;
 }

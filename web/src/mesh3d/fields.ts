@@ -1,7 +1,7 @@
 // fields.ts — what a body can be coloured by, in reports and in the live view: names, units, the value at rest.
 
 export type ColourName =
-  "intensity" | "shape" | "pressure" | "von_mises" | "contact_pressure" | "displacement" | "none";
+  "intensity" | "shape" | "pressure" | "von_mises" | "contact_pressure" | "displacement" | "temperature" | "none";
 
 export interface Colouring {
   name: ColourName;
@@ -47,7 +47,17 @@ export const COLOURINGS: readonly Colouring[] = [
     rest: 0,
     least: 2e-3,
   },
+  {
+    name: "temperature",
+    label: "Temperature T",
+    symbol: "Temperature",
+    units: [{ unit: "°C", perUnit: 1, upTo: Infinity }],
+    rest: 37,
+    least: 1,
+  },
 ];
+/** Of the live view, which does not know heat. */
+export const LIVE_COLOURINGS = COLOURINGS.filter(({ name }) => name !== "temperature");
 /** No field: the body looks as tissue. */
 export const AS_TISSUE: Colouring = {
   name: "none",
@@ -68,4 +78,4 @@ export function unitOf(colouring: Colouring, low: number, high: number): { unit:
 
 /** "equivalent shear strain": its label within a sentence, without the symbol. */
 export const spoken = ({ label }: Colouring): string =>
-  label.replace(/ (s|q|p|\|u\|)$/, "").replace(/^[A-Z]/, (letter) => letter.toLowerCase());
+  label.replace(/ (s|q|p|T|\|u\|)$/, "").replace(/^[A-Z]/, (letter) => letter.toLowerCase());

@@ -11,8 +11,8 @@ export interface LookSettings {
 
 export const TISSUE = "none"; // no field colours the body
 
-/** The body as tissue, whole. */
-export const firstLook = (): LookSettings => ({ colour: TISSUE, seeThrough: false, detail: "auto" });
+/** The body as tissue, whole or seen through. */
+export const firstLook = (seeThrough = false): LookSettings => ({ colour: TISSUE, seeThrough, detail: "auto" });
 
 /** g sees through, f goes between tissue and a field: whether a key was one of these. @param field  to go to */
 export function lookKey(key: string, look: LookSettings, field: string): boolean {
@@ -24,13 +24,13 @@ export function lookKey(key: string, look: LookSettings, field: string): boolean
 
 const storeKey = (name: string): string => `glisson-look:${location.pathname}:${name}`;
 
-/** The look of a view of that name as it was left. @param colours  that it may have */
-export function rememberedLook(name: string, colours: readonly string[]): LookSettings {
+/** The look of a view of that name as it was left. @param colours  that it may have @param first  of a view that was not seen before */
+export function rememberedLook(name: string, colours: readonly string[], first = firstLook()): LookSettings {
   try {
     const kept: unknown = JSON.parse(localStorage.getItem(storeKey(name)) ?? "null");
-    return isLook(kept, colours) ? kept : firstLook();
+    return isLook(kept, colours) ? kept : first;
   } catch {
-    return firstLook(); // no storage, or something else in it
+    return first; // no storage, or something else in it
   }
 }
 

@@ -13,15 +13,15 @@ import { Player, speedsFor } from "./player.ts";
 import { type Colouring, COLOURINGS, colouringOf, spoken, unitOf } from "./fields.ts";
 import { composePicture } from "./screenshot.ts";
 import { interpolate } from "./interpolate.ts";
-import { lookKey, rememberedLook, rememberLook, TISSUE } from "./look.ts";
+import { firstLook, lookKey, rememberedLook, rememberLook, TISSUE } from "./look.ts";
 import { LookControls } from "./look_controls.ts";
 import { webglContext } from "./webgl.ts";
 
 const SLIDER_STEPS = 600;
 /** More marks than this would hide the body: they are off until asked for. */
 const MANY_MARKS = 40;
-/** What F goes to. */
-const FIRST_FIELD = "intensity";
+/** Times of a run of so many seconds are read in minutes. */
+const LONG_S = 180;
 const EXAGGERATIONS = [1, 2, 5, 10, 20, 50];
 
 /** Variants of a scene that have a surface to show. */
@@ -52,6 +52,7 @@ export class MeshPanel {
   private readonly player: Player;
   private readonly tools: HTMLElement;
   private view: MeshView | null = null;
+  private readonly firstField: string; // what F goes to
 
   /** @param first  name of the variant to start with, where it has a surface */
   constructor(
@@ -62,6 +63,7 @@ export class MeshPanel {
   ) {
     const shown = variants.find((variant) => variant.name === first) ?? variants[variants.length - 1]!;
     const fields = fieldsOf(variants);
+    this.firstField = fields[0]?.name ?? TISSUE;
     this.settings = {
       variant: shown.name,
       exaggeration: 1,
@@ -70,9 +72,10 @@ export class MeshPanel {
       ghost: false,
       marks: true,
       arrow: true,
-      look: rememberedLook(scene.name, [TISSUE, ...fields.map(({ name }) => name)]),
+      isotherms: true,
+      look: rememberedLook(scene.name, [TISSUE, ...fields.map(({ name }) => name)], firstLook(hasIsotherms(variants))),
       clip: rememberedClip(scene.name, {
-        on: shown.surface.instruments.some((form) => form.kind === "needle"),
+        on: !hasIsotherms(variants) && shown.surface.instruments.some((form) => form.kind === "needle"),
         axis: "y",
         at: null,
         flipped: false,
@@ -231,6 +234,7 @@ export class MeshPanel {
     const times = column(variant.forces, "time_s");
     const depths = depthName ? column(variant.forces, depthName) : null;
     const depth = times && depths ? interpolate(times, depths, time) : NaN;
+    if (this.player.range[1] >= LONG_S) return `${(time / 60).toFixed(1)}\u00a0min`;
     const unit = this.player.range[1] < 0.5 ? "ms" : "s";
     const shownTime = `${(time * (unit === "ms" ? 1000 : 1)).toFixed(unit === "ms" ? 1 : 3)}\u00a0${unit}`;
     return Number.isFinite(depth) ? `${shownTime} · depth ${(depth * 1000).toFixed(2)}\u00a0mm` : shownTime;
@@ -243,7 +247,12 @@ export class MeshPanel {
     this.key.replaceChildren();
     if (held > 0) this.key.append(entry("held", `held (${held})`));
     if (driven > 0) this.key.append(entry("driven", `driven by a tool (${driven})`));
-    this.key.hidden = !this.settings.marks || held + driven === 0;
+    const isotherms = this.settings.isotherms ? (this.view?.isotherms ?? []) : [];
+    for (const { label, colour } of isotherms)
+      this.key.append(
+        h("span", { class: "key-isotherm" }, h("i", { "aria-hidden": "true", style: `background: ${colour}` }), label),
+      );
+    this.key.hidden = isotherms.length === 0 && (!this.settings.marks || held + driven === 0);
   }
 
   private seekSlider(): void {
@@ -290,10 +299,12 @@ export class MeshPanel {
       "div",
       { class: "mesh-options" },
       select("Speed", speeds.map(factor), String(preferred), (value) => (this.player.speed = Number(value))),
-      select("Displacement", EXAGGERATIONS.map(factor), "1", (value) => {
-        this.settings.exaggeration = Number(value);
-        this.refresh();
-      }),
+      moves(this.variants)
+        ? select("Displacement", EXAGGERATIONS.map(factor), "1", (value) => {
+            this.settings.exaggeration = Number(value);
+            this.refresh();
+          })
+        : null,
       this.look.colour,
       this.rangeChoice,
       this.look.detail,
@@ -301,9 +312,9 @@ export class MeshPanel {
         "div",
         { class: "mesh-checks" },
         this.check("Edges", "edges"),
-        this.check("Rest shape", "ghost"),
-        this.check("Marks", "marks"),
-        this.check("Force", "arrow"),
+        ...(moves(this.variants) ? [this.check("Rest shape", "ghost"), this.check("Marks", "marks")] : []),
+        this.hasForces() ? this.check("Force", "arrow") : null,
+        hasIsotherms(this.variants) ? this.check("Isotherms", "isotherms") : null,
         this.look.seeThrough,
         this.cut.tick,
       ),
@@ -311,7 +322,12 @@ export class MeshPanel {
     );
   }
 
-  private check(label: string, setting: "edges" | "ghost" | "marks" | "arrow"): HTMLElement {
+  /** Whether a variant has forces: one of heat alone has none. */
+  private hasForces(): boolean {
+    return this.variants.some(({ forces }) => column(forces, "force_x_N") !== null);
+  }
+
+  private check(label: string, setting: "edges" | "ghost" | "marks" | "arrow" | "isotherms"): HTMLElement {
     const input = h("input", { type: "checkbox", name: setting, checked: this.settings[setting] });
     input.addEventListener("change", () => {
       this.settings[setting] = input.checked;
@@ -356,7 +372,7 @@ export class MeshPanel {
     else if (body && clipKey(event.key, this.settings.clip, body)) {
       this.cutChanged();
       this.cut.refresh();
-    } else if (lookKey(event.key, this.settings.look, FIRST_FIELD)) this.lookChanged();
+    } else if (lookKey(event.key, this.settings.look, this.firstField)) this.lookChanged();
     else return;
     event.preventDefault();
   }
@@ -364,10 +380,25 @@ export class MeshPanel {
 
 /** What frames of the variants can be coloured by, in the order of the list. */
 function fieldsOf(variants: readonly MeshVariant[]): Colouring[] {
-  const known = new Set(["intensity", "displacement"]);
+  const known = new Set<string>();
   for (const { surface } of variants)
-    for (const frame of surface.frames) for (const name of Object.keys(frame.fields ?? {})) known.add(name);
+    for (const frame of surface.frames) {
+      if (frame.displacement !== "") known.add("intensity").add("displacement");
+      for (const name of Object.keys(frame.fields ?? {})) known.add(name);
+    }
   return COLOURINGS.filter(({ name }) => known.has(name));
+}
+
+/** Whether one of them deforms: of heat alone none does. */
+export function moves(variants: readonly MeshVariant[]): boolean {
+  return variants.some(
+    ({ surface }) => !surface.isotherms || surface.frames.some((frame) => frame.displacement !== ""),
+  );
+}
+
+/** Whether a surface of one of them is crossed by isotherms. */
+function hasIsotherms(variants: readonly MeshVariant[]): boolean {
+  return variants.some(({ surface }) => (surface.isotherms ?? []).length > 0);
 }
 
 /** First and last frame's time; equal where nothing moves. */

@@ -9,6 +9,7 @@ import { fineIsFast, hopeForFine, Pace } from "./drawing_speed.ts";
 import { colouringOf } from "./fields.ts";
 import { ForceArrow, type ForceNow } from "./force_arrow.ts";
 import { interpolate } from "./interpolate.ts";
+import { type DrawnIsotherm, drawnIsotherms } from "./isotherms.ts";
 import { type LookSettings, TISSUE } from "./look.ts";
 import { ScaleBar } from "./scale_bar.ts";
 import { Stage } from "./stage.ts";
@@ -27,6 +28,7 @@ export interface ViewSettings {
   ghost: boolean;
   marks: boolean;
   arrow: boolean; // of the tool's force
+  isotherms: boolean;
   look: LookSettings;
   clip: ClipSettings;
 }
@@ -148,10 +150,10 @@ export class MeshView {
   /** Shows the state at a time [s] with the present settings. */
   show(time: number): void {
     if (this.modelOf !== this.settings.variant) this.showVariant();
-    const { exaggeration, edges, ghost, marks, look } = this.settings;
+    const { exaggeration, edges, ghost, marks, isotherms, look } = this.settings;
     this.range = look.colour === TISSUE ? { low: 0, high: 0 } : this.rangeAt(time);
     this.model?.setLook({ coloured: look.colour !== TISSUE, seeThrough: look.seeThrough, fine: this.fine });
-    this.model?.show({ edges, ghost, marks });
+    this.model?.show({ edges, ghost, marks, isotherms });
     this.model?.update(time, exaggeration, this.range);
     this.showForce(time);
     this.stage.invalidate();
@@ -187,6 +189,12 @@ export class MeshView {
   }
 
   private readonly tables = new Map<string, ForceTable | null>();
+
+  /** What isotherms are drawn of the variant shown; none where its temperature is not known everywhere. */
+  get isotherms(): readonly DrawnIsotherm[] {
+    const { isotherms, start } = this.timeline;
+    return this.timeline.tetsAt(start) ? drawnIsotherms(isotherms) : [];
+  }
 
   get hasInstruments(): boolean {
     return this.model?.hasInstruments ?? false;

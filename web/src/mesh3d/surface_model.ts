@@ -4,7 +4,8 @@
 //                                  ├─ skin: the coarse triangles, met by rays and never drawn
 //                                  ├─ body and wireframe: the surface as it is drawn (BodySkin)
 //                                  │    └─ cap: closes it where it is cut open
-//                                  └─ inner regions, seen through the body or where it is opened
+//                                  ├─ inner regions, seen through the body or where it is opened
+//                                  └─ isotherms, likewise
 //   rest positions ────────────────── ghost: faint skin and its creases
 import * as THREE from "three";
 import { BodySkin } from "./body_skin.ts";
@@ -14,6 +15,7 @@ import { ContactShadow } from "./contact_shadow.ts";
 import { FieldCap } from "./field_cap.ts";
 import { InnerRegions } from "./inner_regions.ts";
 import { InstrumentModel } from "./instrument_model.ts";
+import { drawnIsotherms, Isotherms } from "./isotherms.ts";
 import { markTexture } from "./mark_texture.ts";
 import { coloursOf, regionTints } from "./tissue_colours.ts";
 import type { TissueMaterial } from "./tissue_material.ts";
@@ -58,6 +60,7 @@ export class SurfaceModel {
   private readonly hiddenDriven: THREE.Points;
   private readonly body: BodySkin;
   private readonly inner: InnerRegions;
+  private readonly isotherms: Isotherms;
   private readonly shadow: ContactShadow;
   private readonly ghost = new THREE.Group();
   private readonly disposables: { dispose(): void }[] = [];
@@ -118,6 +121,7 @@ export class SurfaceModel {
     this.cap = new ClipCap(this.body.mesh.geometry, middle, this.size);
     this.cap.tissue = raw;
     this.inner = new InnerRegions(timeline, this.positions, middle, this.size);
+    this.isotherms = new Isotherms(drawnIsotherms(timeline.isotherms));
     this.shadow = new ContactShadow(timeline.rest, timeline.triangles, this.box);
     this.group.add(
       this.shadow.mesh,
@@ -125,6 +129,7 @@ export class SurfaceModel {
       this.cap.group,
       this.fieldCap.mesh,
       this.inner.group,
+      this.isotherms.group,
       this.body.edges,
       this.held,
       this.hiddenDriven,
@@ -134,7 +139,7 @@ export class SurfaceModel {
     );
     this.group.traverse((object) => (object.frustumCulled = false));
     this.disposables.push(this.fieldCap, this.instruments, this.cap, this.edgeMaterial, this.ghostLine, this.ghostSkin);
-    this.disposables.push(this.body, this.inner, this.shadow, this.skin.material as THREE.Material);
+    this.disposables.push(this.body, this.inner, this.isotherms, this.shadow, this.skin.material as THREE.Material);
   }
 
   private keep<T extends { dispose(): void }>(thing: T): T {
@@ -199,8 +204,14 @@ export class SurfaceModel {
     this.showTriangles(this.timeline.trianglesAt(time), this.timeline.kindsAt(time));
     this.body.update(this.positions.array as Float32Array, this.intensity);
     this.inner.update(this.timeline.regionsAt(time));
+    this.showIsotherms(time);
     this.instruments.update(time);
     this.material.tools = this.instruments.near();
+  }
+
+  private showIsotherms(time: number): void {
+    const temperature = this.timeline.isotherms.length > 0 ? this.timeline.temperatureAt(time) : null;
+    if (temperature && this.tets) this.isotherms.update(this.positions.array as Float32Array, temperature, this.tets);
   }
 
   /** Tissue or field, whole or seen through, fine or plain. */
@@ -252,6 +263,7 @@ export class SurfaceModel {
     else this.fieldCap.hide();
     this.shadow.mesh.visible = plane === null; // the shadow is that of the whole body
     this.inner.plane = plane;
+    this.isotherms.plane = plane;
     this.inner.show(this.look.seeThrough || this.cap.open, this.look.coloured);
   }
 
@@ -287,7 +299,8 @@ export class SurfaceModel {
     return { box: this.box, heart };
   }
 
-  show(parts: { edges: boolean; ghost: boolean; marks: boolean; held?: boolean }): void {
+  show(parts: { edges: boolean; ghost: boolean; marks: boolean; held?: boolean; isotherms?: boolean }): void {
+    this.isotherms.group.visible = parts.isotherms === true;
     this.body.edges.visible = parts.edges;
     if (parts.ghost && this.ghost.children.length === 0) this.buildGhost();
     this.ghost.visible = parts.ghost;

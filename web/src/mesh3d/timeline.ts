@@ -1,6 +1,13 @@
 // timeline.ts — the recorded frames of a body as one motion: shape and a field at any time between them.
 import { decodeF32, decodeI16Scaled, decodeU32, decodeU8, decodeU8Scaled } from "../data/decode.ts";
-import type { FrameData, InstrumentForm, InstrumentPlace, SurfaceData, VesselForm } from "../report_data.ts";
+import type {
+  FrameData,
+  InstrumentForm,
+  IsothermData,
+  InstrumentPlace,
+  SurfaceData,
+  VesselForm,
+} from "../report_data.ts";
 import type { ColourName } from "./fields.ts";
 
 export interface Frame {
@@ -23,6 +30,7 @@ export interface SurfaceMotion {
   readonly frames: readonly Frame[];
   readonly instruments: readonly InstrumentForm[];
   readonly container: VesselForm | null;
+  readonly isotherms: readonly IsothermData[];
   readonly tissue: string; // name of what most of the body is; empty where it is not said
   readonly regions: readonly { name: string; triangles: Uint32Array }[]; // closed surfaces inside the body
   readonly end: number; // time of the last frame [s]
@@ -32,6 +40,8 @@ export interface SurfaceMotion {
   kindsAt(time: number): Uint8Array | null;
   regionsAt(time: number): readonly Uint32Array[];
   tetsAt(time: number): Uint32Array | null;
+  /** At each vertex [°C]; null where it is not known. */
+  temperatureAt(time: number): Float32Array | null;
 }
 
 export interface Span {
@@ -47,6 +57,7 @@ export class Timeline implements SurfaceMotion {
   readonly frames: readonly Frame[];
   readonly instruments: readonly InstrumentForm[];
   readonly container: VesselForm | null;
+  readonly isotherms: readonly IsothermData[];
   readonly tissue: string;
   readonly regions: readonly { name: string; triangles: Uint32Array }[];
   readonly recorded: boolean; // false: no frames, rest shape only
@@ -65,6 +76,7 @@ export class Timeline implements SurfaceMotion {
     this.fixed = fit(decodeU8(surface.fixed), new Uint8Array(this.vertices));
     this.instruments = surface.instruments;
     this.container = surface.container ?? null;
+    this.isotherms = surface.isotherms ?? [];
     this.tissue = surface.tissue ?? "";
     this.regions = (surface.regions ?? []).map(({ name, triangles }) => ({
       name,
@@ -146,26 +158,33 @@ export class Timeline implements SurfaceMotion {
   }
 
   /** The field at the vertices of a frame [SI]. */
-  private valuesOf(frame: Frame): Float32Array {
-    if (this.field === "intensity") return frame.intensity;
+  private valuesOf(frame: Frame, field = this.field): Float32Array {
+    if (field === "intensity") return frame.intensity;
     const index = this.frames.indexOf(frame);
-    const key = `${this.field} ${index}`;
+    const key = `${field} ${index}`;
     let values = this.read.get(key);
-    if (!values) this.read.set(key, (values = this.decode(frame, this.data[index])));
+    if (!values) this.read.set(key, (values = this.decode(frame, this.data[index], field)));
     return values;
   }
 
-  private decode(frame: Frame, data: FrameData | undefined): Float32Array {
+  private decode(frame: Frame, data: FrameData | undefined, name: ColourName): Float32Array {
     const values = this.zeros(1);
-    if (this.field === "displacement") {
+    if (name === "displacement") {
       const u = frame.displacement;
       return values.map((_, i) => Math.hypot(u[3 * i]!, u[3 * i + 1]!, u[3 * i + 2]!));
     }
-    const field = data?.fields?.[this.field];
+    const field = data?.fields?.[name];
     if (!field) return values;
     const bytes = decodeU8(field.values);
     const perStep = (field.high - field.low) / 255;
     return values.map((_, i) => field.low + (bytes[i] ?? 0) * perStep);
+  }
+
+  temperatureAt(time: number): Float32Array | null {
+    const { before, after, share } = this.at(time);
+    if (!this.data[this.frames.indexOf(after)]?.fields?.["temperature"]) return null;
+    const [from, to] = [this.valuesOf(before, "temperature"), this.valuesOf(after, "temperature")];
+    return from.map((value, i) => value * (1 - share) + to[i]! * share);
   }
 
   /** Between which numbers the field lies in all frames, 0 among them. @param whole  with what is inside, else at surfaces */

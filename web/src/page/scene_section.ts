@@ -8,7 +8,7 @@ import { PROBE_QUANTITIES, probeChart } from "../charts/probe_charts.ts";
 import { SceneState } from "../charts/scene_state.ts";
 import { variantCharts } from "../charts/variant_charts.ts";
 import { WARNING } from "../format/summary_fields.ts";
-import { MeshPanel, meshVariants } from "../mesh3d/mesh_panel.ts";
+import { MeshPanel, meshVariants, moves } from "../mesh3d/mesh_panel.ts";
 import type { SceneData } from "../report_data.ts";
 import { checkList } from "./checks.ts";
 import { dataTable } from "./data_table.ts";
@@ -139,7 +139,16 @@ function sceneFigures(scene: SceneData): HTMLElement[] {
   const laws = lawCharts(scene.variants).map((model) => figure(model.title, new Chart(model, state).element));
   const meshes = meshVariants(scene);
   const panel = meshes.length > 0 ? new MeshPanel(scene, meshes, state, first) : null;
-  const mesh = panel ? [figure("Deformed mesh", panel.element, panel.variantSelect(), "figure-mesh")] : [];
+  const mesh = panel
+    ? [
+        figure(
+          moves(meshes) ? "Deformed mesh" : "Temperature in the body",
+          panel.element,
+          panel.variantSelect(),
+          "figure-mesh",
+        ),
+      ]
+    : [];
   const perVariant = [
     variantFigure("Parts of the force", scene.variants, state, first, partsChart),
     variantFigure("Loads on the container", scene.variants, state, first, containerChart),
