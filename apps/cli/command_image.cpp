@@ -58,7 +58,7 @@ std::filesystem::path frame_of(const std::filesystem::path& collection, int numb
 
 /// The file of a body: a .vtu, a frame of a .pvd, or of a run's folder.
 std::filesystem::path body_file(const ImageOptions& options) {
-  const std::filesystem::path body = options.body;
+  std::filesystem::path body = options.body;
   std::error_code none;
   if (std::filesystem::is_directory(body, none))
     return frame_of(view::variant_folder(std::filesystem::weakly_canonical(body), options.variant).path / "frames.pvd",
@@ -160,7 +160,7 @@ std::string write_field(const ImageOptions& options, const Body& body, const Vox
                            : field.components == 3 ? VoxelValues::vector
                            : field.components == 6 ? VoxelValues::symmetric
                                                    : VoxelValues::plain;
-  const std::string name = shift ? "displacement_mm" : field.name;
+  std::string name = shift ? "displacement_mm" : field.name;
   write_nifti(options.out, image, kind, name);
   return name;
 }

@@ -320,7 +320,8 @@ CoupledRows::Outcome CoupledRows::solve(int most) {
     outcome.settled = is_once() || (change <= enough && most_missed() <= kMissed * enough);
     if (outcome.settled || outcome.sweeps >= most || mobility_.stops()) {
       share_in_corners();
-      outcome.unmet = is_soft || (!outcome.settled && most_missed() > island_.may_miss());
+      outcome.found = outcome.settled || is_soft || most_missed() <= island_.may_miss();
+      outcome.unmet = is_soft || !outcome.found;
       return outcome;
     }
     if (may_newton && !is_soft && outcome.sweeps >= next) {

@@ -25,6 +25,7 @@ class CoupledRows {
   struct Outcome {
     int sweeps = 0;
     bool settled = true;  ///< impulses no longer change
+    bool found = true;    ///< all rows are met, or nearly, or cannot be
     bool unmet = false;   ///< not all rows could be met
   };
   /// @param most  sweeps

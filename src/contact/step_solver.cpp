@@ -378,7 +378,7 @@ void StepSolver::solve(Tools tools, const InteractionStep& step) {
 
 int StepSolver::solve_coupled(Tools tools, const InteractionStep& step, StepMobility& mobility, int most) {
   fit(tools.size());
-  is_unmet_ = false, has_settled_ = true;
+  is_unmet_ = false, has_settled_ = is_found_ = true;
   if (islands_.empty()) islands_.emplace_back();
   Island& all = islands_.front();
   all.tools.clear(), island_count_ = 1;
@@ -399,7 +399,7 @@ int StepSolver::solve_coupled(Tools tools, const InteractionStep& step, StepMobi
     CoupledRows rows(all, step, mobility, free);
     const CoupledRows::Outcome outcome = rows.solve(std::min(most - sweeps, kMostLongSweeps));
     sweeps += outcome.sweeps;
-    is_unmet_ = outcome.unmet, has_settled_ = outcome.settled;
+    is_unmet_ = outcome.unmet, has_settled_ = outcome.settled, is_found_ = outcome.found;
     for_yields([](ToolYield& tool) { tool.begin(); });
     rows.finish(step.impulses);
     for_yields([](ToolYield& tool) { tool.end(); });

@@ -40,6 +40,8 @@ class StepSolver {
   bool moves_on(double share) const;
   /// Whether the impulses of a long step no longer changed at the end.
   bool has_settled() const { return has_settled_; }
+  /// Whether these meet all rows, or nearly, or no impulses do.
+  bool is_found() const { return is_found_; }
 
  private:
   void fit(std::size_t tools);
@@ -70,7 +72,7 @@ class StepSolver {
   std::vector<std::uint32_t> merged_;  ///< per tool: the first of its island, or one nearer to it
   PushClock clock_;
   std::vector<InterfaceBook> books_;  ///< of each tool that acts
-  bool is_unmet_ = false, has_settled_ = true;
+  bool is_unmet_ = false, has_settled_ = true, is_found_ = true;
 };
 
 }  // namespace glisson

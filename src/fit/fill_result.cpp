@@ -70,11 +70,12 @@ void conclude_on_values(const FitResult& result, std::vector<std::string>& sente
     if (c.curve.size() != 1 || c.fitted.size() != 1) continue;
     const std::string unit = c.curve.measurement.unit == "-" ? "" : " " + c.curve.measurement.unit;
     const double measured = c.curve.force[0], part = measured != 0.0 ? c.fitted[0] / measured - 1.0 : 0.0;
-    std::string text = c.curve.name + " is " + rounded(c.fitted[0], 4) + unit + " where " + rounded(measured, 4) +
-                       unit + " was measured";
+    std::string text = c.curve.name;
+    text.append(" is ").append(rounded(c.fitted[0], 4)).append(unit);
+    text.append(" where ").append(rounded(measured, 4)).append(unit).append(" was measured");
     if (unit != " °C" && measured != 0.0)
-      text += std::string(" (") + (part < 0.0 ? "" : "+") + rounded(100.0 * part, 2) + " %)";
-    sentences.push_back(text + (c.curve.held_out ? ", held out." : "."));
+      text.append(" (").append(part < 0.0 ? "" : "+").append(rounded(100.0 * part, 2)).append(" %)");
+    sentences.push_back(text.append(c.curve.held_out ? ", held out." : "."));
   }
 }
 

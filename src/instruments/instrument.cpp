@@ -183,10 +183,10 @@ void Instrument::begin_step() {
   if (yields_ != nullptr) yields_->force = -forces_.total();
 }
 
-/// Where a force on the tool takes it; where it is, if that makes no sense.
+/// Where a force on the tool takes it, however far: the tissue may hold it back. Where it is, if that is not finite.
 Vec3d Instrument::end_under(const Vec3d& force) {
   const Pose end = driver_->advance_under(time_, step_, {force, -forces_.torque});
-  return bounds_.holds(end) ? end.position : pose_.position;
+  return std::isfinite(norm(end.position)) ? end.position : pose_.position;
 }
 
 ToolYield* Instrument::find_end(const InteractionStep& step) {

@@ -95,7 +95,7 @@ resample = { over = "displacement", how = "pick", points = 50 }
 }
 
 TEST(DataSection, SaysWhatIsWrongWithIt) {
-  EXPECT_THAT(section_fault("weight = 1\n"), HasSubstr("missing key `files`"));
+  EXPECT_THAT(section_fault("weight = 1\n"), HasSubstr("`files` is missing; name at least one"));
   EXPECT_THAT(section_fault("files = []\n"), HasSubstr("FIT.toml:2:9: data.0.files: is empty; name at least one file"));
   const std::string head = "files = [\"a.csv\"]\n";
   EXPECT_THAT(section_fault(head + "columns.force = { name = \"F\", unit = \"cd\" }\n"),

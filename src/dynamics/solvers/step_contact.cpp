@@ -187,7 +187,7 @@ bool StepContact::find_forces() {
     for (std::size_t k = 0; k < active_.size(); ++k) active_[k].velocity = velocities_[k];
   }
   agrees_ = agrees_ && !interactions_.moves_on(kEndFound);
-  return sweeps < most && !interactions_.moves_on(kEndLost) && !stops();
+  return sweeps < most && interactions_.is_found() && !interactions_.moves_on(kEndLost) && !stops();
 }
 
 bool StepContact::correct(std::span<Vec3d> u) {

@@ -57,6 +57,8 @@ class Interactions {
   int constrain(std::span<const Vec3d> free, StepMobility& mobility, int most);
   /// Whether the impulses of a long step no longer changed at the end.
   bool has_settled() const { return solver_.has_settled(); }
+  /// Whether these meet all rows, or nearly, or no impulses do.
+  bool is_found() const { return solver_.is_found(); }
   /// Whether a tool that a force moves ends elsewhere than its rows were declared for. @param share  of what the tissue holds it back
   bool moves_on(double share) const { return solver_.moves_on(share); }
   /// What impulses held in this step.

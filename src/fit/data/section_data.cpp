@@ -242,6 +242,34 @@ void finish_data(DataSpec& x, const Node& table, const Place& place) {
   require_columns(x, table, place);
 }
 
+/// What a test of heat measures, and values in the place of files.
+void add_keys_of_heat(Section<DataSpec>& s) {
+  s.key(
+       "of", [](DataSpec & d) -> auto& { return d.heat.column; },
+       "of a test of heat: the column of the scene's temperature.csv or heat.csv that was measured, e.g. "
+       "\"aside_2_C\", \"cold_width_m\"")
+      .otherwise("none");
+  s.key(
+       "over", [](DataSpec & d) -> auto& { return d.heat.over; },
+       "of a test of heat: a column that it is divided by, e.g. \"ice_area_m2\"")
+      .otherwise("none");
+  s.key(
+       "variant", [](DataSpec & d) -> auto& { return d.heat.variant; }, "of a test of heat: variant of the scene")
+      .otherwise("that of the fit");
+  s.key("times_s", &DataSpec::times, "of a test of heat, in place of files: times of the scene, ascending")
+      .in("s")
+      .within(at_least(0))
+      .otherwise("`files`");
+  s.key("values", &DataSpec::values,
+        "what was measured then, in the unit of the column: °C, m, m², m³, or a share of 1")
+      .otherwise("`files`");
+  s.key("deviation", &DataSpec::deviation,
+        "of a test of heat: standard deviation of one value, in the unit of the column; where all fitted curves have "
+        "one, and are weighed by it, intervals follow from it")
+      .within(above(0))
+      .otherwise("that of the rows about a smooth curve");
+}
+
 }  // namespace
 
 const SectionSpec& column_section() {
@@ -479,29 +507,7 @@ const SectionSpec& data_section() {
          "indenter", indenter_section(), [](D & d) -> auto& { return d.indenter.emplace(); },
          "the indenter of an indentation")
         .otherwise("none");
-    s.key(
-         "of", [](D & d) -> auto& { return d.heat.column; },
-         "of a test of heat: the column of the scene's temperature.csv or heat.csv that was measured, e.g. "
-         "\"aside_2_C\", \"cold_width_m\"")
-        .otherwise("none");
-    s.key(
-         "over", [](D & d) -> auto& { return d.heat.over; },
-         "of a test of heat: a column that it is divided by, e.g. \"ice_area_m2\"")
-        .otherwise("none");
-    s.key(
-         "variant", [](D & d) -> auto& { return d.heat.variant; }, "of a test of heat: variant of the scene")
-        .otherwise("that of the fit");
-    s.key("times_s", &D::times, "of a test of heat, in place of files: times of the scene, ascending")
-        .in("s")
-        .within(at_least(0))
-        .otherwise("`files`");
-    s.key("values", &D::values, "what was measured then, in the unit of the column: °C, m, m², m³, or a share of 1")
-        .otherwise("`files`");
-    s.key("deviation", &D::deviation,
-          "of a test of heat: standard deviation of one value, in the unit of the column; where all fitted curves have "
-          "one, and are weighed by it, intervals follow from it")
-        .within(above(0))
-        .otherwise("that of the rows about a smooth curve");
+    add_keys_of_heat(s);
     s.choice<bool>("use", &D::held_out, {{"fit", false, "fitted"}, {"test", true, "held out, to test the fit"}},
                    "purpose");
     s.key("weight", &D::weight, "factor on the residuals").in("-").within(at_least(0));

@@ -340,9 +340,18 @@ std::optional<UnloadedShape> BuiltVariant::unload(const Variant& variant, const 
   }
 }
 
+namespace {
+
+/// Without an unloaded shape the mesh itself, which is moved from.
+TetMesh mesh_at_rest(TetMesh& whole, const std::optional<UnloadedShape>& shape) {
+  return shape ? at_places(whole, shape->rest) : std::move(whole);
+}
+
+}  // namespace
+
 BuiltVariant::BuiltVariant(TetMesh whole, const std::optional<UnloadedShape>& shape, const Variant& variant)
     : instruments(make_instruments(variant, whole)),
-      simulation(simulation_of(variant, shape ? at_places(whole, shape->rest) : std::move(whole), instruments)) {
+      simulation(simulation_of(variant, mesh_at_rest(whole, shape), instruments)) {
   const TetMesh& mesh = simulation.mesh();
   if (shape) take_loaded(whole, *shape, simulation);
   for (std::size_t i = 0; i < variant.fixed.size(); ++i) {
