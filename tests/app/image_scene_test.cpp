@@ -11,11 +11,11 @@ namespace {
 using ImageScene = ProgramTest;
 using ::testing::HasSubstr;
 
-/// A ball of 54 mm with a lump, whose back lies 3 mm deep in a slab.
+/// A ball of 54 mm with a lump, whose back lies 10 mm deep in a slab.
 std::string organ_on_a_slab() {
   return meta_image({26, 24, 26}, 3.0, [](int i, int j, int k) {
     const double r = std::hypot(i - 12.5, j - 13.5, k - 12.5);
-    return j < 5 ? 9 : r < 3.5 ? 64 : r < 9.0 ? 5 : 0;
+    return j < 8 ? 9 : r < 3.5 ? 64 : r < 9.0 ? 5 : 0;
   });
 }
 
