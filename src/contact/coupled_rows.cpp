@@ -25,7 +25,7 @@ constexpr double kStallsSinceLook = 1e-3;  ///< … and of the same since it was
 constexpr double kStill = 10.0;            ///< tolerances: a vertex that moves by less in a step sticks
 constexpr double kRounding = 1e-12;
 constexpr double kMissed = 0.02;       ///< tolerances: of points, beside what a sweep moves
-constexpr double kFarOffLong = 100.0;  ///< tolerances: rows that still move by more have not been met
+constexpr double kFarOffLong = 100.0;  ///< tolerances: rows that move by less are not taken to stall, they are slow
 constexpr int kLookLong = 40;          ///< sweeps after which it is looked whether rows can be met
 // Friction from which on two walls at right angles can hold a point by pressing and pulling it.
 constexpr double kJams = 1.0;
